@@ -1,0 +1,34 @@
+//! Wendland's C2 function (Wendland 1995; as an SPH kernel: Dehnen & Aly 2012). No pairing at any number of
+//! neighbours; the default.
+
+use super::Kernel;
+use crate::simd::Lanes;
+use std::f64::consts::PI;
+
+/// `w = (1 - q/2)⁴ (1 + 2q)` on `q < 2`.
+#[derive(Clone, Copy, Debug)]
+pub struct WendlandC2;
+
+impl Kernel for WendlandC2 {
+    const SUPPORT: f64 = 2.0;
+
+    fn normalisation(dimension: usize) -> f64 {
+        match dimension {
+            1 => 3.0 / 4.0,
+            2 => 7.0 / (4.0 * PI),
+            _ => 21.0 / (16.0 * PI),
+        }
+    }
+
+    #[inline(always)]
+    fn shape<L: Lanes>(q: L) -> L {
+        let s = q.mul_add(L::constant(-0.5), L::constant(1.0));
+        s.squared().squared() * q.mul_add(L::constant(2.0), L::constant(1.0))
+    }
+
+    #[inline(always)]
+    fn slope_over_q<L: Lanes>(q: L) -> L {
+        let s = q.mul_add(L::constant(-0.5), L::constant(1.0));
+        L::constant(-5.0) * s.cubed()
+    }
+}

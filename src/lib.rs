@@ -1,0 +1,3 @@
+//! Smoothed particle hydrodynamics.
+pub mod kernel;
+pub mod simd;
