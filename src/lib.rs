@@ -1,3 +1,4 @@
 //! Smoothed particle hydrodynamics.
+pub mod eos;
 pub mod kernel;
 pub mod simd;
