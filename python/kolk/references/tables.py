@@ -10,7 +10,7 @@ from __future__ import annotations
 import io
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from functools import lru_cache
+from functools import cache
 from importlib import resources
 from types import MappingProxyType
 
@@ -33,7 +33,7 @@ class Reference:
     kind: str
     """``experiment`` or ``simulation``."""
     units: Mapping[str, str]
-    """Unit of each column; scales such as ``rho g H`` or ``sqrt(H/g)`` where it is dimensionless."""
+    """Unit of each column, or its scale (``rho g H``, ``sqrt(H/g)``) where it is dimensionless."""
     peaks: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     """Peak value and its time of the full record, where thinning or averaging lowered it."""
     notes: tuple[str, ...] = ()
@@ -84,7 +84,7 @@ def names() -> list[str]:
     return sorted(f.name[:-4] for f in folder.iterdir() if f.name.endswith(".csv"))
 
 
-@lru_cache(maxsize=None)
+@cache
 def load(name: str) -> Reference:
     """The record called ``name``; :func:`names` lists them.
 

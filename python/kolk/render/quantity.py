@@ -1,0 +1,80 @@
+"""What a picture shows of a frame: values, their label, their range of colours."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import numpy.typing as npt
+from matplotlib.colors import Normalize
+
+from kolk.compare.fields import FrameLike, fluid
+from kolk.compare.scales import Scales
+
+FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A field of the fluid and the unit in which it is shown."""
+
+    name: str
+    label: str
+    unit: float
+    """SI value of one on the colour bar."""
+
+    def of(self, frame: FrameLike) -> tuple[FloatArray, FloatArray]:
+        """Positions (m, D) of the fluid and the values (m,) in this quantity's unit."""
+        if self.name == "speed":
+            x, velocity = fluid(frame, "velocity")
+            return x, np.linalg.norm(velocity, axis=1) / self.unit
+        x, value = fluid(frame, self.name)
+        return x, value / self.unit
+
+
+def quantity(name: str, scales: Scales | None = None) -> Quantity:
+    """``speed``, ``pressure`` or ``density``; dimensionless where the case has scales."""
+    if name == "speed":
+        if scales:
+            unit = math.sqrt(scales.gravity * scales.length)
+            return Quantity(name, r"speed / $\sqrt{gH}$", unit)
+        return Quantity(name, "speed [m/s]", 1.0)
+    if name == "pressure":
+        if scales:
+            return Quantity(name, r"pressure / $\rho g H$", scales.of("rho g H"))
+        return Quantity(name, "pressure [kPa]", 1000.0)
+    return Quantity(name, f"{name} [kg/m³]" if name == "density" else name, 1.0)
+
+
+def colour_range(shown: Quantity, frames: Iterable[FrameLike]) -> Normalize:
+    """One range for several frames: 0 to the 99.5th percentile, below 0 only where much is.
+
+    Percentiles, so that the few particles of an impact do not darken the rest.
+    """
+    ends = [np.percentile(v, [0.5, 99.5]) for v in (shown.of(f)[1] for f in frames) if len(v)]
+    low, high = (min(e[0] for e in ends), max(e[1] for e in ends)) if ends else (0.0, 1.0)
+    # a density lies near its reference, far from 0; the other fields start at 0
+    if shown.name != "density" and low > -0.1 * abs(high):
+        low = 0.0
+    return Normalize(float(low), float(high) if high > low else float(low) + 1.0)
+
+
+def time_label(time: float, scales: Scales | None = None) -> str:
+    """``t = 0.42 s`` and, where the case has scales, the same in sqrt(H/g)."""
+    text = f"t = {time:.3g} s" if time < 0.1 else f"t = {time:.2f} s"
+    if scales:
+        text += rf"  ({time / scales.of('sqrt(H/g)'):.2f} $\sqrt{{H/g}}$)"
+    return text
+
+
+def spread(frames: Sequence[FrameLike], count: int) -> list[int]:
+    """Indices of ``count`` frames spread evenly over a series, the last included.
+
+    The start is left out where there are enough frames: nothing has moved yet.
+    """
+    last = len(frames) - 1
+    if last < count:
+        return list(range(last + 1))
+    return sorted({round(last * (i + 1) / count) for i in range(count)})
