@@ -1,0 +1,112 @@
+"""Runs a scene with kolk through its public Python interface.
+
+Variants: `mixed` and `f64`, the precision; `narrow-` in front of it takes SPlisHSPlasH's kernel
+and support. Dam breaks: artificial viscosity, Fourtakas's density diffusion. Taylor-Green: laminar
+viscosity, density diffusion and particle shifting.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from scenes import Scene, make, vortex_pressure, vortex_velocity
+from worker import FRONTS, WARM_UP, Clock, Job, Record, leave, parse_job, peak_bytes
+
+import kolk
+
+
+def origin(scene: Scene) -> list[float]:
+    return [0.0] * scene.dimension
+
+
+def as_kolk(scene: Scene) -> kolk.Scene:
+    """The same scene in kolk's terms; kolk fills the shapes with the same lattice."""
+    shared: dict[str, Any] = {
+        "name": scene.name.replace(" ", "-").lower(),
+        "dimension": scene.dimension,
+        "spacing": scene.spacing,
+        "smoothing_ratio": scene.smoothing_ratio,
+        "kernel": scene.kernel,
+        "until": scene.until,
+    }
+    box = {"box": {"from": origin(scene), "to": list(scene.box)}}
+    water: dict[str, Any] = {
+        "name": "water",
+        "shape": box,
+        "density": scene.density,
+        "sound_speed": scene.sound_speed,
+    }
+    if scene.tank is None:
+        water |= {
+            "viscosity": {"laminar": scene.viscosity},
+            "velocity": lambda position: vortex_velocity(position, 0.0),
+            "pressure": vortex_pressure,
+        }
+        periodic = {"x": [0.0, 1.0], "y": [0.0, 1.0]}
+        numerics = {"density_diffusion": "antuono", "shifting": "lind"}
+        return kolk.Scene(**shared, periodic=periodic, fluid=[water], numerics=numerics)
+    water["viscosity"] = {"artificial": scene.alpha}
+    tank = {"from": origin(scene), "to": list(scene.tank), "open": ["top"]}
+    return kolk.Scene(
+        **shared,
+        gravity=[0.0] * (scene.dimension - 1) + [-scene.gravity],
+        fluid=[water],
+        wall=[{"name": "tank", "shape": {"tank": tank}}],
+        numerics={"density_diffusion": "fourtakas"},
+    )
+
+
+def evaluations(sim: kolk.Simulation) -> int:
+    """Force evaluations so far: calls of the sweep that sums the forces."""
+    return int(sim.timings["forces"]["calls"])
+
+
+def run_steps(sim: kolk.Simulation, scene: Scene, job: Job, clock: Clock) -> float:
+    """Takes the job's steps; returns the force evaluations in the timed ones."""
+    sim.advance_to(scene.until, max_steps=WARM_UP)
+    before = evaluations(sim)
+    clock.start(sim.time)
+    clock.steps = sim.advance_to(scene.until, max_steps=job.steps)
+    return evaluations(sim) - before
+
+
+def run_to_end(sim: kolk.Simulation, scene: Scene, clock: Clock) -> float:
+    """Runs to the scene's end, sampling the front; returns the force evaluations."""
+    clock.start(0.0)
+    for sample in range(1, FRONTS + 1):
+        sim.advance_to(scene.until * sample / FRONTS)
+        if scene.tank is not None:
+            clock.fronts.append((sim.time, float(sim.bodies["water"].position[:, 0].max())))
+    clock.steps = sim.step_count
+    return evaluations(sim)
+
+
+def main() -> None:
+    job = parse_job()
+    narrow, _, precision = job.variant.rpartition("-")
+    scene = make(job.scene, job.cells, narrow=bool(narrow))
+    sim = kolk.Simulation(as_kolk(scene), precision=precision, threads=job.threads)
+    clock = Clock()
+    done = run_steps(sim, scene, job, clock) if job.steps else run_to_end(sim, scene, clock)
+    seconds = clock.seconds()
+    water = sim.bodies["water"]
+    walls = [sim.bodies[name].position for name in sim.bodies if name != "water"]
+    wall = np.concatenate(walls) if walls else scene.wall
+    record = Record(
+        version=kolk.__version__,
+        fluid=len(water.position),
+        wall=len(wall),
+        steps=clock.steps,
+        evaluations=done,
+        wall_seconds=seconds,
+        physical_seconds=sim.time - clock.time_at_start,
+        end=sim.time,
+        peak_bytes=peak_bytes(),
+        fronts=clock.fronts,
+    )
+    leave(job, record, water.position, water.velocity, wall)
+
+
+if __name__ == "__main__":
+    main()
