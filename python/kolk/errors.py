@@ -28,7 +28,7 @@ class Problem:
     def __str__(self) -> str:
         key = ""
         for part in self.path:
-            key += f"[{part + 1}]" if isinstance(part, int) else f".{part}"
+            key += f"[{part}]" if isinstance(part, int) else f".{part}"
         return f"{key[1:]}: {self.message}" if key else self.message
 
 
@@ -39,8 +39,12 @@ class SceneError(KolkError, ValueError):
         self.problems: tuple[Problem, ...] = tuple(problems)
         if self.problems and not message:
             lines = [str(p) for p in self.problems]
-            message = lines[0] if len(lines) == 1 else "\n".join(
-                [f"{len(lines)} problems in the scene:", *(f"  {line}" for line in lines)]
+            message = (
+                lines[0]
+                if len(lines) == 1
+                else "\n".join(
+                    [f"{len(lines)} problems in the scene:", *(f"  {line}" for line in lines)]
+                )
             )
         super().__init__(message)
 

@@ -1,0 +1,66 @@
+"""Scenes: the model, its shapes and particles, and the files it comes from and goes to."""
+
+from __future__ import annotations
+
+from .fill import Body, Filling
+from .load import load, loads
+from .model import KERNEL_SUPPORT, Scene
+from .parts import (
+    FieldProbe,
+    Fluid,
+    ForceProbe,
+    FrontProbe,
+    LevelProbe,
+    Numerics,
+    Output,
+    Periodic,
+    PressureProbe,
+    Probe,
+    Viscosity,
+    Wall,
+)
+from .shapes import (
+    Box,
+    Cylinder,
+    Difference,
+    Disc,
+    Function,
+    Polygon,
+    Shape,
+    Sphere,
+    Tank,
+    Union,
+)
+from .template import template
+
+__all__ = [
+    "KERNEL_SUPPORT",
+    "Body",
+    "Box",
+    "Cylinder",
+    "Difference",
+    "Disc",
+    "FieldProbe",
+    "Filling",
+    "Fluid",
+    "ForceProbe",
+    "FrontProbe",
+    "Function",
+    "LevelProbe",
+    "Numerics",
+    "Output",
+    "Periodic",
+    "Polygon",
+    "PressureProbe",
+    "Probe",
+    "Scene",
+    "Shape",
+    "Sphere",
+    "Tank",
+    "Union",
+    "Viscosity",
+    "Wall",
+    "load",
+    "loads",
+    "template",
+]

@@ -1,0 +1,48 @@
+"""The scene in the engine's words: resolved numbers only, no "auto"."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from .model import Scene
+
+
+def engine_config(scene: Scene) -> dict[str, Any]:
+    """The engine's configuration as a JSON-ready dict."""
+    fluid, numerics = scene.fluid[0], scene.numerics
+    viscosity = fluid.viscosity
+    artificial = laminar = None
+    if viscosity is not None and viscosity.artificial is not None:
+        artificial = {"alpha": viscosity.artificial, "beta": viscosity.beta}
+    if viscosity is not None and viscosity.laminar is not None:
+        laminar = {"kinematic": viscosity.laminar}
+    diffusion = shifting = wall = None
+    if numerics.density_diffusion != "none":
+        diffusion = {"form": numerics.density_diffusion, "delta": numerics.delta}
+    if numerics.shifting != "none":
+        surface = numerics.free_surface
+        if surface is None:
+            surface = any(interval is None for interval in scene.periodic_axes)
+        shifting = {"form": numerics.shifting, "free_surface": surface}
+    if scene.wall:
+        wall = {"method": numerics.wall, "slip": scene.wall[0].slip}
+    return {
+        "dimension": scene.dimension,
+        "spacing": scene.spacing,
+        "smoothing_length": scene.smoothing_length,
+        "kernel": scene.kernel,
+        "gravity": None if scene.gravity is None else list(scene.gravity),
+        "periodic": [None if p is None else list(p) for p in scene.periodic_axes],
+        "reference_density": fluid.density,
+        "sound_speed": scene.sound_speed,
+        "eos": fluid.eos,
+        "gamma": fluid.gamma,
+        "background_pressure": numerics.background_pressure,
+        "artificial_viscosity": artificial,
+        "laminar_viscosity": laminar,
+        "density_diffusion": diffusion,
+        "shifting": shifting,
+        "wall": wall,
+        "courant": numerics.courant,
+        "time_step": numerics.time_step,
+    }

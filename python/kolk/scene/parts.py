@@ -1,0 +1,361 @@
+"""The tables of a scene file: fluids, walls, probes, numerics, output."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Annotated, Any, Literal
+
+import numpy as np
+import numpy.typing as npt
+from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, model_validator
+
+from kolk.errors import Problem, SceneError
+
+from .arrays import Particles, load_particles
+from .base import Flag, Model, Name, NotNegative, Positive, Real, Text, Vector, Whole, shown
+from .expression import Expression
+from .shapes import ShapeTable
+
+FloatArray = npt.NDArray[np.float64]
+OfPosition = Callable[[FloatArray], FloatArray]
+
+
+def _number(value: Any) -> float | None:
+    if isinstance(value, np.generic):
+        value = value.item()
+    if isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value):
+        return float(value)
+    return None
+
+
+def _sound_speed(value: Any) -> Any:
+    number = _number(value)
+    if value == "auto" or (number is not None and number > 0.0):
+        return value if number is None else number
+    raise ValueError(f'found {shown(value)}, must be "auto" or a speed greater than 0 in m/s')
+
+
+def _velocity(value: Any) -> Any:
+    if callable(value):
+        return value
+    if isinstance(value, np.ndarray):
+        value = value.tolist()
+    if not isinstance(value, (list, tuple)) or len(value) not in (2, 3):
+        raise ValueError(
+            f"found {shown(value)}, must be a list of 2 or 3 numbers or expressions in quotes"
+        )
+    parts: list[float | Expression] = []
+    for part in value:
+        number = _number(part)
+        if number is None and not isinstance(part, (str, Expression)):
+            raise ValueError(
+                f"found {shown(part)}, must be a finite number or an expression in quotes"
+            )
+        parts.append(
+            number
+            if number is not None
+            else part
+            if isinstance(part, Expression)
+            else Expression(part)
+        )
+    return tuple(parts)
+
+
+def _pressure(value: Any) -> Any:
+    if callable(value) or value in ("hydrostatic", "zero"):
+        return value
+    if isinstance(value, str):
+        return Expression(value)
+    raise ValueError(
+        f'found {shown(value)}, must be "hydrostatic", "zero" or an expression in quotes (Pa)'
+    )
+
+
+SoundSpeed = Annotated[
+    float | Literal["auto"],
+    PlainValidator(_sound_speed),
+    WithJsonSchema({"anyOf": [{"const": "auto"}, {"type": "number", "exclusiveMinimum": 0}]}),
+]
+Velocity = Annotated[
+    tuple[float | Expression, ...] | OfPosition,
+    PlainValidator(_velocity),
+    PlainSerializer(lambda value: value),
+    WithJsonSchema(
+        {
+            "type": "array",
+            "items": {"type": ["number", "string"]},
+            "minItems": 2,
+            "maxItems": 3,
+        }
+    ),
+]
+Pressure = Annotated[
+    Literal["hydrostatic", "zero"] | Expression | OfPosition,
+    PlainValidator(_pressure),
+    PlainSerializer(lambda value: value),
+    WithJsonSchema({"type": "string"}),
+]
+
+
+def _particles(value: Any) -> Any:
+    if isinstance(value, Particles):
+        return value
+    if isinstance(value, (str, Path)):
+        return load_particles(Path(value))
+    raise ValueError(f"found {shown(value)}, must be the path of an .npz file in quotes")
+
+
+OwnParticles = Annotated[
+    Particles,
+    PlainValidator(_particles),
+    PlainSerializer(lambda value: value),
+    WithJsonSchema({"type": "string"}),
+]
+
+
+class _Body(Model):
+    name: Name = Field(description="unique among bodies")
+    shape: ShapeTable | None = Field(None, description="what to fill with particles")
+    particles: OwnParticles | None = Field(
+        None, description="own particles instead of a shape: path of an .npz file"
+    )
+
+    @model_validator(mode="after")
+    def _shape_or_particles(self) -> _Body:
+        if (self.shape is None) == (self.particles is None):
+            found = "is missing" if self.shape is None else "found both 'shape' and 'particles'"
+            raise SceneError(
+                problems=[Problem(("shape",), f"{found}: give a shape, or own particles instead")]
+            )
+        return self
+
+
+class Viscosity(Model):
+    """Artificial viscosity, laminar viscosity, or both."""
+
+    artificial: NotNegative | None = Field(None, description="Monaghan's alpha, 0.01 to 0.1")
+    beta: NotNegative = Field(0.0, description="Monaghan's beta: only for shocks")
+    laminar: Positive | None = Field(None, description="kinematic viscosity, m^2/s")
+
+    @model_validator(mode="after")
+    def _something(self) -> Viscosity:
+        if self.artificial is None and self.laminar is None:
+            raise SceneError(
+                problems=[
+                    Problem(
+                        (), "is empty: give 'artificial' or 'laminar', or leave it out for none"
+                    )
+                ]
+            )
+        return self
+
+
+class Fluid(_Body):
+    """A body of fluid."""
+
+    density: Positive = Field(1000.0, description="reference density, kg/m^3")
+    sound_speed: SoundSpeed = Field("auto", description='m/s, or "auto"')
+    viscosity: Viscosity | None = Field(None, description="leave it out for none")
+    velocity: Velocity | None = Field(None, description="at the start, m/s: numbers or expressions")
+    pressure: Pressure | None = Field(
+        None,
+        description='at the start: "hydrostatic" (the default with gravity), "zero", or an '
+        "expression in Pa",
+    )
+    eos: Literal["tait", "linear"] = "tait"
+    gamma: Annotated[Real, Field(ge=1)] = Field(7.0, description="exponent of the Tait equation")
+    jitter: Annotated[Real, Field(ge=0, lt=0.5)] = Field(
+        0.0, description="largest random shift of a particle at the start, in spacings"
+    )
+    seed: Annotated[Whole, Field(ge=0)] = Field(0, description="of the jitter")
+
+    @classmethod
+    def from_arrays(
+        cls,
+        position: Any,
+        velocity: Any = None,
+        density: Any = None,
+        mass: Any = None,
+        *,
+        name: str = "fluid",
+        reference_density: float = 1000.0,
+        **keys: Any,
+    ) -> Fluid:
+        """A fluid of the user's own particles.
+
+        position (n, D) in m; velocity (n, D) in m/s, at rest if None; density (n,) in kg/m^3, from
+        the pressure at the start if None, or one number: the reference density; mass (n,) in kg
+        (per metre in 2D), one cell of the scene's spacing each if None. ``keys`` are the other
+        keys of a fluid. The arrays are copied. Raises ArrayError, SceneError.
+        """
+        number = _number(density)
+        if number is not None:
+            reference_density, density = number, None
+        return cls(
+            name=name,
+            particles=Particles(position, velocity, density, mass),
+            density=reference_density,
+            **keys,
+        )
+
+
+class Wall(_Body):
+    """A solid that the fluid does not enter."""
+
+    slip: Literal["free", "no"] = Field("free", description='"no": the fluid sticks to it')
+    velocity: Vector | None = Field(
+        None, description="m/s: the wall slides in its own plane; its particles stay"
+    )
+
+    @classmethod
+    def from_arrays(
+        cls, position: Any, mass: Any = None, *, name: str = "wall", **keys: Any
+    ) -> Wall:
+        """A wall of the user's own particles: position (n, D) in m, mass (n,) in kg.
+
+        Mass is density times volume, with the fluid's reference density; one cell of the scene's
+        spacing each if None. Raises ArrayError, SceneError.
+        """
+        return cls(name=name, particles=Particles(position, mass=mass), **keys)
+
+
+class PressureProbe(Model):
+    """Mean pressure over a sensor's face, or at a point."""
+
+    at: Vector = Field(description="m; on a wall: its very surface")
+    diameter: Positive | None = Field(
+        None, description="of the sensor's face, m; a point if absent"
+    )
+
+
+class LevelProbe(Model):
+    """Height of the water over a base point."""
+
+    at: Vector = Field(description="base point, m")
+    direction: Vector | None = Field(None, description="upwards; against gravity if absent")
+
+    @model_validator(mode="after")
+    def _has_direction(self) -> LevelProbe:
+        if self.direction is not None and not any(self.direction):
+            raise SceneError(
+                problems=[Problem(("direction",), "found no direction, must not be all zeros")]
+            )
+        return self
+
+
+class FrontProbe(Model):
+    """Farthest coordinate that a fluid has reached along an axis."""
+
+    axis: Literal["x", "y", "z"] = "x"
+    body: Text | None = Field(None, description="name of a fluid; the first one if absent")
+
+
+class ForceProbe(Model):
+    """Force of the fluid on a wall."""
+
+    body: Text = Field(description="name of a wall")
+
+
+class FieldProbe(Model):
+    """A field of the fluid at a point."""
+
+    quantity: Literal["velocity", "pressure", "density"]
+    at: Vector = Field(description="m")
+
+
+PROBE_KINDS = ("pressure", "level", "front", "force", "field")
+
+
+class Probe(Model):
+    """A quantity recorded over time, of exactly one kind."""
+
+    name: Name = Field(description="unique among probes")
+    pressure: PressureProbe | None = None
+    level: LevelProbe | None = None
+    front: FrontProbe | None = None
+    force: ForceProbe | None = None
+    field: FieldProbe | None = None
+    every: Positive | None = Field(None, description="interval, s; output.every / 20 if absent")
+
+    @model_validator(mode="after")
+    def _exactly_one(self) -> Probe:
+        given = [k for k in PROBE_KINDS if getattr(self, k) is not None]
+        if len(given) != 1:
+            found = f"found {' and '.join(given)}" if given else "measures nothing"
+            allowed = f"{found}, must be exactly one of {', '.join(PROBE_KINDS)}"
+            raise SceneError(problems=[Problem((), allowed)])
+        return self
+
+    @property
+    def kind(self) -> str:
+        """pressure, level, front, force or field."""
+        return next(k for k in PROBE_KINDS if getattr(self, k) is not None)
+
+    @property
+    def what(self) -> PressureProbe | LevelProbe | FrontProbe | ForceProbe | FieldProbe:
+        """The table of its kind."""
+        part = getattr(self, self.kind)
+        assert isinstance(part, (PressureProbe, LevelProbe, FrontProbe, ForceProbe, FieldProbe))
+        return part
+
+
+class Numerics(Model):
+    """How the equations are solved. The defaults suit free-surface flow."""
+
+    density_diffusion: Literal["antuono", "molteni", "fourtakas", "none"] = "antuono"
+    delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(0.1, description="of the density diffusion")
+    shifting: Literal["none", "sun", "lind"] = "none"
+    free_surface: Flag | None = Field(
+        None, description="whether shifting looks for one; by default unless all axes are periodic"
+    )
+    wall: Literal["adami", "dynamic"] = "adami"
+    courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
+        None, description="the integrator's own if absent"
+    )
+    time_step: Positive | None = Field(None, description="fixed, s; adaptive if absent")
+    expected_speed: Positive | None = Field(
+        None, description="largest speed that the flow will reach, m/s: for the sound speed"
+    )
+    background_pressure: NotNegative = Field(0.0, description="Pa: only for flows without surface")
+
+
+FIELDS = ("velocity", "density", "pressure", "mass", "id")
+FieldName = Literal["velocity", "density", "pressure", "mass", "id"]
+
+
+class Output(Model):
+    """What a run leaves behind, and how often."""
+
+    every: Positive | None = Field(None, description="interval of frames, s; until / 100 if absent")
+    fields: tuple[FieldName, ...] = Field(FIELDS, description="columns of a frame")
+    checkpoint_every: Positive | None = Field(
+        None, description="s of the simulation; on interruption and at the end if absent"
+    )
+    pictures: Flag = True
+
+
+class Periodic(Model):
+    """Axes along which the domain repeats: from, to in m."""
+
+    x: Annotated[tuple[Real, Real], Field()] | None = None
+    y: Annotated[tuple[Real, Real], Field()] | None = None
+    z: Annotated[tuple[Real, Real], Field()] | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Periodic:
+        for axis in "xyz":
+            interval = getattr(self, axis)
+            if interval is not None and not interval[1] > interval[0]:
+                raise SceneError(
+                    problems=[
+                        Problem(
+                            (axis,), f"found {list(interval)}, must be [low, high] with low < high"
+                        )
+                    ]
+                )
+        return self
+
+    def axes(self, dimension: int) -> Sequence[tuple[float, float] | None]:
+        """The interval of each axis, None where it does not repeat."""
+        return [getattr(self, axis) for axis in "xyz"[:dimension]]
