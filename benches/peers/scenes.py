@@ -19,6 +19,7 @@ COLUMN = 0.05715  # m: the width a of Martin and Moyce's column, 2.25 in
 RUN = 5.0  # length of the tank in column widths
 TALL = 2.2  # height of the tank's walls in column widths
 SMOOTHING = 1.3  # h / spacing of the dam breaks with Wendland C2
+NARROW = 1.0  # the same with SPlisHSPlasH's cubic spline: four particle radii are the support
 REYNOLDS = 100.0
 
 
@@ -77,14 +78,6 @@ def tank_walls(upper: tuple[float, ...], spacing: float, layers: int) -> Array:
     return grid[~inside]
 
 
-def narrow_smoothing(dimension: int) -> float:
-    """h / spacing at which a SPlisHSPlasH particle has the volume of a lattice cell.
-
-    Its support is four particle radii r, its particle's volume (2r)² in 2D and 0.8 (2r)³ in 3D.
-    """
-    return 1.0 if dimension == 2 else 0.8 ** (-1.0 / 3.0)
-
-
 def dam_break(
     dimension: int, cells: int, *, narrow: bool = False, layers: int | None = None
 ) -> Scene:
@@ -94,7 +87,7 @@ def dam_break(
     the support needs.
     """
     spacing = COLUMN / cells
-    ratio, support = (narrow_smoothing(dimension) if narrow else SMOOTHING), 2.0
+    ratio, support = (NARROW if narrow else SMOOTHING), 2.0
     deep = (COLUMN,) if dimension == 3 else ()
     box = (COLUMN, *deep, 2 * COLUMN)
     tank = (RUN * COLUMN, *deep, round(TALL * cells) * spacing)

@@ -4,7 +4,7 @@ Variants: `wcsph` (the equation of state, sound speed and acoustic time step of 
 step fixed) and `dfsph` (its incompressible solver with its own time step: what its users would
 take). SPlisHSPlasH ties the support to the particle's volume: the radius is chosen so that the
 volume is the lattice's, and the support follows (`narrow` in scenes.py). Walls: one layer of
-samples (Akinci et al. 2012), where the others have their first layer. There are no periodic
+samples (Akinci et al. 2012), about where the others have their first. There are no periodic
 boundaries, so no Taylor-Green vortex.
 """
 
@@ -20,6 +20,8 @@ import numpy as np
 import pysplishsplash as sph
 from scenes import Array, Scene, make
 from worker import FRONTS, WARM_UP, Clock, Job, Record, leave, parse_job, peak_bytes
+
+GAP = 0.11  # at which the first layer beside a plane wall has the density of the lattice
 
 CUBE = (
     "v -.5 -.5 -.5\nv .5 -.5 -.5\nv .5 .5 -.5\nv -.5 .5 -.5\n"
@@ -42,6 +44,16 @@ def write_bgeo(path: Path, position: Array) -> None:
     points = np.ones((len(position), 4), dtype=">f4")
     points[:, :3] = position
     path.write_bytes(header + points.tobytes() + b"\x00\xff")
+
+
+def set_back(wall: Array, tank: tuple[float, ...], spacing: float) -> Array:
+    """Wall samples moved outwards by `GAP` spacings.
+
+    A single layer stands for the whole wall, so its samples weigh about 1.5 lattice cells. A fluid
+    lattice one spacing away would start compressed by several per cent and burst.
+    """
+    outwards = (wall > np.asarray(tank)).astype(np.float64) - (wall < 0.0)
+    return wall + GAP * spacing * outwards
 
 
 def artificial_as_kinematic(scene: Scene) -> float:
@@ -167,7 +179,9 @@ class Run:
 def main() -> None:
     job = parse_job()
     scene = make(job.scene, job.cells, narrow=True)
-    wall = make(job.scene, job.cells, narrow=True, layers=1).wall
+    lattice = make(job.scene, job.cells, narrow=True, layers=1).wall
+    assert scene.tank is not None, "SPlisHSPlasH has no periodic boundaries"
+    wall = set_back(lattice, scene.tank, scene.spacing)
     run = Run(scene, job, wall)
     run.advance()
     seconds = run.clock.seconds()
