@@ -1,0 +1,60 @@
+"""Collapse of a water column twice as high as wide, 2D: the experiment of Martin and Moyce.
+
+The time of release is unknown, so that the fronts are aligned where they pass 1.44 a.
+"""
+
+from __future__ import annotations
+
+import math
+from types import MappingProxyType
+
+from kolk.cases import Case, Comparison
+from kolk.scene import Scene
+
+A = 0.05715
+"""Width of the column (2.25 inches), m; it is 2 A high."""
+GRAVITY = 9.81
+TIME = math.sqrt(A / (2 * GRAVITY))
+ALIGNED = MappingProxyType({"align": 1.44})
+
+scene = Scene(
+    name="surge-front",
+    title="Collapse of a water column (Martin and Moyce 1952)",
+    dimension=2,
+    spacing=A / 40,
+    gravity=[0.0, -GRAVITY],
+    until=6.5 * TIME,
+    fluid=[
+        {
+            "name": "water",
+            "shape": {"box": {"from": [0.0, 0.0], "to": [A, 2 * A]}},
+            "density": 1000.0,
+            "viscosity": {"artificial": 0.02},
+        }
+    ],
+    wall=[
+        {
+            "name": "tank",
+            "shape": {"tank": {"from": [0.0, 0.0], "to": [12 * A, 3 * A], "open": ["top"]}},
+        }
+    ],
+    probe=[
+        {"name": "front", "front": {"axis": "x", "body": "water"}},
+        {"name": "level", "level": {"at": [0.0, 0.0]}},
+    ],
+    output={"every": 0.005},
+)
+
+case = Case(
+    name="surge-front",
+    title="Collapse of a water column",
+    shows="how fast a surge runs over a dry bed",
+    source="Martin and Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324: a = 57.15 mm, height 2 a",
+    reference="surge front measured for a = 1.125 and 2.25 inches, aligned at 1.44 a",
+    cost="3,200 fluid and 2,200 wall particles, about 5,400 steps",
+    scene=scene,
+    comparisons=tuple(
+        Comparison("front", "front", f"martin-moyce-{a}in", TIME, A, "front", "", ALIGNED)
+        for a in ("2.25", "1.125")
+    ),
+)
