@@ -1,0 +1,64 @@
+"""`kolk run`: runs a scene and says how it went."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Annotated, cast
+
+import typer
+
+from kolk.cli.gate import gated
+from kolk.cli.scenes import SceneWord, Settings, Spacing, find_scene, run_folder
+
+
+@gated
+def run(
+    scene: SceneWord,
+    spacing: Spacing = None,
+    until: Annotated[
+        float | None, typer.Option("--until", help="End of the run, s.", metavar="S")
+    ] = None,
+    out: Annotated[
+        Path | None,
+        typer.Option(
+            "--out", help="The run's folder.", show_default="runs/NAME, or runs/NAME-2 ..."
+        ),
+    ] = None,
+    threads: Annotated[int, typer.Option("--threads", help="0: every core.")] = 0,
+    precision: Annotated[
+        str, typer.Option("--precision", help="f64, or mixed: pair arithmetic in f32.")
+    ] = "f64",
+    settings: Settings = None,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="Go on with the run in the folder.")
+    ] = False,
+    force: Annotated[
+        bool, typer.Option("--force", help="Start over in a folder that holds a run.")
+    ] = False,
+    pictures: Annotated[
+        bool | None,
+        typer.Option(
+            "--pictures/--no-pictures", help="Pictures and film.", show_default="as the scene says"
+        ),
+    ] = None,
+    quiet: Annotated[bool, typer.Option("--quiet", help="Show nothing but errors.")] = False,
+) -> None:
+    """Run a scene; its results go into a folder."""
+    from kolk import runner
+    from kolk.cli.closing import closing
+
+    found = find_scene(scene, settings or [], spacing=spacing, until=until)
+    if resume and out is None:
+        out = run_folder(scene)
+    finished = runner.run(
+        found,
+        out,
+        precision=cast(runner.Precision, precision),
+        threads=threads,
+        resume=resume,
+        force=force,
+        quiet=quiet,
+        pictures=pictures,
+    )
+    if not quiet:
+        print(closing(finished))
