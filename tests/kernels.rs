@@ -1,6 +1,6 @@
 //! The smoothing kernels against a table of values, their integrals and their own differences.
 
-use kolk::kernel::{Kernel, KernelName, Scaled, WendlandC2};
+use kolk::kernel::{Kernel, KernelName, Scaled};
 use std::f64::consts::PI;
 
 /// Rows of `tests/data/kernels.csv`: name, dimension, support, q, W h^D, dW/dq h^D; ten digits.
@@ -121,7 +121,7 @@ fn kernels_end_at_their_support_and_are_finite_at_zero() {
         }
     }
     assert!(
-        Scaled::<WendlandC2, 2>::new(1.0)
+        Scaled::<2>::new(KernelName::WendlandC2, 1.0)
             .slope_over_r(0.0)
             .is_finite()
     );

@@ -54,12 +54,12 @@ impl KernelName {
     /// # Panics
     /// In any other dimension.
     pub fn value(self, dimension: usize, r: f64, h: f64) -> f64 {
-        with_kernel!(self, K => match dimension {
-            1 => Scaled::<K, 1>::new(h).value(r),
-            2 => Scaled::<K, 2>::new(h).value(r),
-            3 => Scaled::<K, 3>::new(h).value(r),
+        match dimension {
+            1 => Scaled::<1>::new(self, h).value(r),
+            2 => Scaled::<2>::new(self, h).value(r),
+            3 => Scaled::<3>::new(self, h).value(r),
             _ => panic!("a kernel has 1, 2 or 3 dimensions, not {dimension}"),
-        })
+        }
     }
 
     /// `dW/dr (r, h)` [m^-(D+1)] in `dimension` 1, 2 or 3; zero beyond the support, negative inside.
@@ -67,12 +67,12 @@ impl KernelName {
     /// # Panics
     /// In any other dimension.
     pub fn gradient(self, dimension: usize, r: f64, h: f64) -> f64 {
-        r * with_kernel!(self, K => match dimension {
-            1 => Scaled::<K, 1>::new(h).slope_over_r(r),
-            2 => Scaled::<K, 2>::new(h).slope_over_r(r),
-            3 => Scaled::<K, 3>::new(h).slope_over_r(r),
+        r * match dimension {
+            1 => Scaled::<1>::new(self, h).slope_over_r(r),
+            2 => Scaled::<2>::new(self, h).slope_over_r(r),
+            3 => Scaled::<3>::new(self, h).slope_over_r(r),
             _ => panic!("a kernel has 1, 2 or 3 dimensions, not {dimension}"),
-        })
+        }
     }
 }
 
