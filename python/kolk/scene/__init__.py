@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .composed import Difference, Function, Union
 from .fill import Body, Filling
 from .load import load, loads
 from .model import KERNEL_SUPPORT, Scene
@@ -19,18 +20,7 @@ from .parts import (
     Viscosity,
     Wall,
 )
-from .shapes import (
-    Box,
-    Cylinder,
-    Difference,
-    Disc,
-    Function,
-    Polygon,
-    Shape,
-    Sphere,
-    Tank,
-    Union,
-)
+from .shapes import Box, Cylinder, Disc, Polygon, Shape, Sphere, Tank
 from .template import template
 
 __all__ = [

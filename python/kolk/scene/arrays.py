@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kolk.errors import ArrayError, KolkError
+from kolk.output.atomic import replacing, storage_error
 
 FloatArray = npt.NDArray[np.float64]
 COLUMNS = ("position", "velocity", "density", "mass")
@@ -50,12 +50,13 @@ class Particles:
         return f"<{len(self)} particles in {self.dimension}D>"
 
     def save(self, path: Path) -> None:
-        """Write the columns to ``path`` (NumPy's npz), whole or not at all."""
+        """Write the columns to ``path`` (npz), whole or not at all. Raises RunError."""
         columns = {c: getattr(self, c) for c in COLUMNS if getattr(self, c) is not None}
-        part = path.with_name(path.name + ".part")
-        with part.open("wb") as file:
-            np.savez_compressed(file, **columns)
-        os.replace(part, path)
+        try:
+            with replacing(path) as part, part.open("wb") as file:
+                np.savez_compressed(file, **columns)
+        except OSError as error:
+            raise storage_error(path, error, "write the particles") from error
 
 
 def load_particles(path: Path) -> Particles:

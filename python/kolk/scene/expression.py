@@ -101,7 +101,8 @@ def _check(node: ast.expr, text: str) -> None:
         name = node.func.id
         if name not in FUNCTIONS:
             raise ValueError(
-                f"unknown function '{name}' in {shown(text)}{nearest(name, FUNCTIONS)} Note: {_HELP}"
+                f"unknown function '{name}' in {shown(text)}{nearest(name, FUNCTIONS)} "
+                f"Note: {_HELP}"
             )
         wanted = 2 if name in _TWO_ARGUMENTS else 1
         if len(node.args) != wanted:

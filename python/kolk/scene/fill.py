@@ -111,13 +111,13 @@ def _fluid_part(scene: Scene, fluid: Fluid) -> _Part:
         if isinstance(shape, Tank):
             raise _error(where, "is a shape for walls: fill fluid from a 'box'")
         low, high = shape.bounds()
-        across = float(np.min(high - low)) / scene.spacing
-        if across < FEWEST_ACROSS * (1 - 1e-9):
+        thinnest = float(np.min(high - low))
+        if thinnest < FEWEST_ACROSS * scene.spacing * (1 - 1e-9):
             raise _error(
                 ("spacing",),
                 f"found {scene.spacing:g} m, too coarse for fluid '{fluid.name}', which is "
-                f"{np.min(high - low):g} m across at its thinnest: use {np.min(high - low) / 10:.2g} "
-                f"m for ten particles across, at most {np.min(high - low) / FEWEST_ACROSS:.2g} m",
+                f"{thinnest:g} m across at its thinnest: use {thinnest / 10:.2g} m for ten "
+                f"particles across, at most {thinnest / FEWEST_ACROSS:.2g} m",
             )
         points, steps = lattice(shape, scene.spacing)
         inside = points if isinstance(shape, Box) else points[shape.contains(points)]

@@ -47,21 +47,23 @@ class Scene(Model):
     """
 
     name: Name = Field(description="of the run's folder")
-    title: Text | None = Field(None, description="one line for people")
+    title: Text | None = Field(default=None, description="one line for people")
     dimension: Literal[2, 3]
     spacing: Positive = Field(description="initial particle spacing, m")
     smoothing_ratio: Annotated[Real, Field(ge=0.8, le=4.0)] = Field(
-        DEFAULT_SMOOTHING_RATIO, description="smoothing length over spacing"
+        default=DEFAULT_SMOOTHING_RATIO, description="smoothing length over spacing"
     )
     kernel: Literal["wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = "wendland-c2"
-    gravity: Vector | None = Field(None, description="m/s^2; leave it out for none")
+    gravity: Vector | None = Field(default=None, description="m/s^2; leave it out for none")
     until: Positive = Field(description="end of the run, s")
-    periodic: Periodic | None = Field(None, description="axes along which the domain repeats")
+    periodic: Periodic | None = Field(
+        default=None, description="axes along which the domain repeats"
+    )
     fluid: tuple[Fluid, ...] = Field(min_length=1)
     wall: tuple[Wall, ...] = ()
     probe: tuple[Probe, ...] = ()
-    numerics: Numerics = Field(default_factory=Numerics)
-    output: Output = Field(default_factory=Output)
+    numerics: Numerics = Numerics()
+    output: Output = Output()
 
     def __init__(self, **data: Any) -> None:
         from .checks import check_consistency
@@ -152,8 +154,8 @@ class Scene(Model):
 
     def plain(self) -> dict[str, Any]:
         """The keys that were given, as nested dicts and lists; Python objects as they are."""
-        data = self.model_dump(exclude_unset=True, exclude_none=True)
-        return _listed(data)
+        data: dict[str, Any] = _listed(self.model_dump(exclude_unset=True, exclude_none=True))
+        return data
 
     def to_toml(self) -> str:
         """The complete scene as a scene file, defaults written out: it reproduces the run.

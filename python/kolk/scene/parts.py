@@ -13,9 +13,21 @@ from pydantic import Field, PlainSerializer, PlainValidator, WithJsonSchema, mod
 from kolk.errors import Problem, SceneError
 
 from .arrays import Particles, load_particles
-from .base import Flag, Model, Name, NotNegative, Positive, Real, Text, Vector, Whole, shown
+from .base import (
+    Flag,
+    Interval,
+    Model,
+    Name,
+    NotNegative,
+    Positive,
+    Real,
+    Text,
+    Vector,
+    Whole,
+    shown,
+)
+from .composed import ShapeTable
 from .expression import Expression
-from .shapes import ShapeTable
 
 FloatArray = npt.NDArray[np.float64]
 OfPosition = Callable[[FloatArray], FloatArray]
@@ -116,9 +128,9 @@ OwnParticles = Annotated[
 
 class _Body(Model):
     name: Name = Field(description="unique among bodies")
-    shape: ShapeTable | None = Field(None, description="what to fill with particles")
+    shape: ShapeTable | None = Field(default=None, description="what to fill with particles")
     particles: OwnParticles | None = Field(
-        None, description="own particles instead of a shape: path of an .npz file"
+        default=None, description="own particles instead of a shape: path of an .npz file"
     )
 
     @model_validator(mode="after")
@@ -134,9 +146,11 @@ class _Body(Model):
 class Viscosity(Model):
     """Artificial viscosity, laminar viscosity, or both."""
 
-    artificial: NotNegative | None = Field(None, description="Monaghan's alpha, 0.01 to 0.1")
-    beta: NotNegative = Field(0.0, description="Monaghan's beta: only for shocks")
-    laminar: Positive | None = Field(None, description="kinematic viscosity, m^2/s")
+    artificial: NotNegative | None = Field(
+        default=None, description="Monaghan's alpha, 0.01 to 0.1"
+    )
+    beta: NotNegative = Field(default=0.0, description="Monaghan's beta: only for shocks")
+    laminar: Positive | None = Field(default=None, description="kinematic viscosity, m^2/s")
 
     @model_validator(mode="after")
     def _something(self) -> Viscosity:
@@ -154,21 +168,25 @@ class Viscosity(Model):
 class Fluid(_Body):
     """A body of fluid."""
 
-    density: Positive = Field(1000.0, description="reference density, kg/m^3")
+    density: Positive = Field(default=1000.0, description="reference density, kg/m^3")
     sound_speed: SoundSpeed = Field("auto", description='m/s, or "auto"')
-    viscosity: Viscosity | None = Field(None, description="leave it out for none")
-    velocity: Velocity | None = Field(None, description="at the start, m/s: numbers or expressions")
+    viscosity: Viscosity | None = Field(default=None, description="leave it out for none")
+    velocity: Velocity | None = Field(
+        default=None, description="at the start, m/s: numbers or expressions"
+    )
     pressure: Pressure | None = Field(
-        None,
+        default=None,
         description='at the start: "hydrostatic" (the default with gravity), "zero", or an '
         "expression in Pa",
     )
     eos: Literal["tait", "linear"] = "tait"
-    gamma: Annotated[Real, Field(ge=1)] = Field(7.0, description="exponent of the Tait equation")
-    jitter: Annotated[Real, Field(ge=0, lt=0.5)] = Field(
-        0.0, description="largest random shift of a particle at the start, in spacings"
+    gamma: Annotated[Real, Field(ge=1)] = Field(
+        default=7.0, description="exponent of the Tait equation"
     )
-    seed: Annotated[Whole, Field(ge=0)] = Field(0, description="of the jitter")
+    jitter: Annotated[Real, Field(ge=0, lt=0.5)] = Field(
+        default=0.0, description="largest random shift of a particle at the start, in spacings"
+    )
+    seed: Annotated[Whole, Field(ge=0)] = Field(default=0, description="of the jitter")
 
     @classmethod
     def from_arrays(
@@ -205,7 +223,7 @@ class Wall(_Body):
 
     slip: Literal["free", "no"] = Field("free", description='"no": the fluid sticks to it')
     velocity: Vector | None = Field(
-        None, description="m/s: the wall slides in its own plane; its particles stay"
+        default=None, description="m/s: the wall slides in its own plane; its particles stay"
     )
 
     @classmethod
@@ -225,7 +243,7 @@ class PressureProbe(Model):
 
     at: Vector = Field(description="m; on a wall: its very surface")
     diameter: Positive | None = Field(
-        None, description="of the sensor's face, m; a point if absent"
+        default=None, description="of the sensor's face, m; a point if absent"
     )
 
 
@@ -233,7 +251,7 @@ class LevelProbe(Model):
     """Height of the water over a base point."""
 
     at: Vector = Field(description="base point, m")
-    direction: Vector | None = Field(None, description="upwards; against gravity if absent")
+    direction: Vector | None = Field(default=None, description="upwards; against gravity if absent")
 
     @model_validator(mode="after")
     def _has_direction(self) -> LevelProbe:
@@ -248,7 +266,7 @@ class FrontProbe(Model):
     """Farthest coordinate that a fluid has reached along an axis."""
 
     axis: Literal["x", "y", "z"] = "x"
-    body: Text | None = Field(None, description="name of a fluid; the first one if absent")
+    body: Text | None = Field(default=None, description="name of a fluid; the first one if absent")
 
 
 class ForceProbe(Model):
@@ -276,7 +294,9 @@ class Probe(Model):
     front: FrontProbe | None = None
     force: ForceProbe | None = None
     field: FieldProbe | None = None
-    every: Positive | None = Field(None, description="interval, s; output.every / 20 if absent")
+    every: Positive | None = Field(
+        default=None, description="interval, s; output.every / 20 if absent"
+    )
 
     @model_validator(mode="after")
     def _exactly_one(self) -> Probe:
@@ -304,33 +324,40 @@ class Numerics(Model):
     """How the equations are solved. The defaults suit free-surface flow."""
 
     density_diffusion: Literal["antuono", "molteni", "fourtakas", "none"] = "antuono"
-    delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(0.1, description="of the density diffusion")
+    delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
+        default=0.1, description="of the density diffusion"
+    )
     shifting: Literal["none", "sun", "lind"] = "none"
     free_surface: Flag | None = Field(
-        None, description="whether shifting looks for one; by default unless all axes are periodic"
+        default=None,
+        description="whether shifting looks for one; by default unless all axes are periodic",
     )
     wall: Literal["adami", "dynamic"] = "adami"
     courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
-        None, description="the integrator's own if absent"
+        default=None, description="the integrator's own if absent"
     )
-    time_step: Positive | None = Field(None, description="fixed, s; adaptive if absent")
+    time_step: Positive | None = Field(default=None, description="fixed, s; adaptive if absent")
     expected_speed: Positive | None = Field(
-        None, description="largest speed that the flow will reach, m/s: for the sound speed"
+        default=None, description="largest speed that the flow will reach, m/s: for the sound speed"
     )
-    background_pressure: NotNegative = Field(0.0, description="Pa: only for flows without surface")
+    background_pressure: NotNegative = Field(
+        default=0.0, description="Pa: only for flows without surface"
+    )
 
 
-FIELDS = ("velocity", "density", "pressure", "mass", "id")
 FieldName = Literal["velocity", "density", "pressure", "mass", "id"]
+FIELDS: tuple[FieldName, ...] = ("velocity", "density", "pressure", "mass", "id")
 
 
 class Output(Model):
     """What a run leaves behind, and how often."""
 
-    every: Positive | None = Field(None, description="interval of frames, s; until / 100 if absent")
-    fields: tuple[FieldName, ...] = Field(FIELDS, description="columns of a frame")
+    every: Positive | None = Field(
+        default=None, description="interval of frames, s; until / 100 if absent"
+    )
+    fields: tuple[FieldName, ...] = Field(default=FIELDS, description="columns of a frame")
     checkpoint_every: Positive | None = Field(
-        None, description="s of the simulation; on interruption and at the end if absent"
+        default=None, description="s of the simulation; on interruption and at the end if absent"
     )
     pictures: Flag = True
 
@@ -338,9 +365,9 @@ class Output(Model):
 class Periodic(Model):
     """Axes along which the domain repeats: from, to in m."""
 
-    x: Annotated[tuple[Real, Real], Field()] | None = None
-    y: Annotated[tuple[Real, Real], Field()] | None = None
-    z: Annotated[tuple[Real, Real], Field()] | None = None
+    x: Interval | None = None
+    y: Interval | None = None
+    z: Interval | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> Periodic:

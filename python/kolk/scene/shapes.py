@@ -7,18 +7,16 @@ Python it may also be the shape itself, ``kolk.Box(from_=..., to=...)``. Lengths
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
-from typing import Annotated, Any, Literal, NamedTuple
+from typing import Literal, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
-from pydantic import ConfigDict, Field, PlainValidator, WithJsonSchema, model_validator
+from pydantic import Field, model_validator
 
 from kolk.errors import Problem, SceneError
 
 from . import distance
-from .base import Model, Positive, Vector, shown
-from .expression import Expression
+from .base import Model, Positive, Vector
 
 FloatArray = npt.NDArray[np.float64]
 Bounds = tuple[FloatArray, FloatArray]
@@ -63,7 +61,7 @@ class Shape(Model):
         # Decimal fractions are inexact: 0.3 / 0.1 must not become four cells.
         counts = np.ceil((high - low) / spacing - 1e-6).astype(int)
         return [
-            Axis(a + spacing * (np.arange(max(n, 1)) + 0.5), spacing)
+            Axis(np.asarray(a + spacing * (np.arange(max(n, 1)) + 0.5), np.float64), spacing)
             for a, n in zip(low, counts, strict=True)
         ]
 
@@ -72,7 +70,8 @@ class Shape(Model):
         return self.distance(points) < 0.0
 
 
-def _problem(key: str, message: str) -> SceneError:
+def problem(key: str, message: str) -> SceneError:
+    """An error at one key of a shape."""
     return SceneError(problems=[Problem((key,), message)])
 
 
@@ -80,22 +79,24 @@ def fitted(low: float, high: float, spacing: float) -> Axis:
     """Cell centres from ``low`` to ``high``, as near to ``spacing`` apart as divides the length."""
     n = max(1, round((high - low) / spacing))
     step = (high - low) / n
-    return Axis(low + step * (np.arange(n) + 0.5), step)
+    return Axis(np.asarray(low + step * (np.arange(n) + 0.5), np.float64), step)
 
 
-class _FromTo(Shape):
+class FromTo(Shape):
+    """What has a low and a high corner."""
+
     from_: Vector = Field(alias="from", description="low corner, m")
     to: Vector = Field(description="high corner, m")
 
     @model_validator(mode="after")
-    def _ordered(self) -> _FromTo:
+    def _ordered(self) -> FromTo:
         if len(self.from_) != len(self.to):
-            raise _problem(
+            raise problem(
                 "to", f"found {len(self.to)} numbers, must have {len(self.from_)} as 'from' has"
             )
         for axis, a, b in zip("xyz", self.from_, self.to, strict=False):
             if not b > a:
-                raise _problem(
+                raise problem(
                     "to",
                     f"found {axis} = {b:g}, must be greater than 'from', which has {axis} = {a:g}: "
                     "the shape is empty",
@@ -112,7 +113,7 @@ class _FromTo(Shape):
         return {len(self.from_)}
 
 
-class Box(_FromTo):
+class Box(FromTo):
     """An axis-parallel rectangle (2D) or box (3D)."""
 
     def distance(self, points: FloatArray) -> FloatArray:
@@ -123,11 +124,11 @@ class Box(_FromTo):
         return [fitted(a, b, spacing) for a, b in zip(self.from_, self.to, strict=True)]
 
 
-class Tank(_FromTo):
+class Tank(FromTo):
     """Walls around a box: the solid is everything beyond its closed faces."""
 
     open: tuple[Side, ...] = Field(
-        (), description="sides without a wall: left, right, bottom, top, front, back"
+        default=(), description="sides without a wall: left, right, bottom, top, front, back"
     )
 
     def sides(self) -> dict[str, tuple[int, int]]:
@@ -141,12 +142,12 @@ class Tank(_FromTo):
     def _sides_exist(self) -> Tank:
         for side in self.open:
             if side not in self.sides():
-                raise _problem(
+                raise problem(
                     "open",
                     f'found "{side}", which a tank in 2D does not have: {", ".join(self.sides())}',
                 )
         if len(set(self.open)) == len(self.sides()):
-            raise _problem("open", "found every side: a tank without walls. Leave one side out")
+            raise problem("open", "found every side: a tank without walls. Leave one side out")
         return self
 
     def inner(self) -> Bounds:
@@ -177,7 +178,8 @@ class Tank(_FromTo):
             below = 0 if (axis, 0) in is_open else layers
             above = 0 if (axis, 1) in is_open else layers
             step = (b - a) / n
-            axes.append(Axis(a + step * (np.arange(-below, n + above) + 0.5), step))
+            at = a + step * (np.arange(-below, n + above) + 0.5)
+            axes.append(Axis(np.asarray(at, np.float64), float(step)))
         return axes
 
 
@@ -206,7 +208,7 @@ class Sphere(Shape):
         """Symmetric about the centre, so that a ball at rest stays where it is."""
         n = max(1, round(2 * self.radius / spacing))
         offsets = spacing * (np.arange(n + 2) - (n + 1) / 2)
-        return [Axis(c + offsets, spacing) for c in self.centre]
+        return [Axis(np.asarray(c + offsets, np.float64), spacing) for c in self.centre]
 
 
 class Disc(Sphere):
@@ -215,7 +217,7 @@ class Disc(Sphere):
     @model_validator(mode="after")
     def _flat(self) -> Disc:
         if len(self.centre) != 2:
-            raise _problem(
+            raise problem(
                 "centre", "found 3 numbers, but a disc is flat: use 'sphere' or 'cylinder'"
             )
         return self
@@ -232,11 +234,11 @@ class Cylinder(Shape):
     def _has_length(self) -> Cylinder:
         for key, value in (("from", self.from_), ("to", self.to)):
             if len(value) != 3:
-                raise _problem(
+                raise problem(
                     key, f"found {len(value)} numbers, must have 3: in 2D use 'disc' or 'box'"
                 )
         if self.from_ == self.to:
-            raise _problem("to", "is the same point as 'from': the cylinder is empty")
+            raise problem("to", "is the same point as 'from': the cylinder is empty")
         return self
 
     def distance(self, points: FloatArray) -> FloatArray:
@@ -263,27 +265,25 @@ class Polygon(Shape):
     """A polygon; in 3D with ``from`` and ``to``: the prism over it along the z axis."""
 
     points: tuple[Vector, ...] = Field(min_length=3, description="corners [x, y] in order, m")
-    from_: float | None = Field(None, alias="from", description="lowest z of a prism, m")
-    to: float | None = Field(None, description="highest z of a prism, m")
+    from_: float | None = Field(default=None, alias="from", description="lowest z of a prism, m")
+    to: float | None = Field(default=None, description="highest z of a prism, m")
 
     @model_validator(mode="after")
     def _simple(self) -> Polygon:
         import shapely
 
         if any(len(p) != 2 for p in self.points):
-            raise _problem("points", "found a corner of 3 numbers, must be [x, y] each")
+            raise problem("points", "found a corner of 3 numbers, must be [x, y] each")
         if (self.from_ is None) != (self.to is None):
-            raise _problem(
+            raise problem(
                 "to", "'from' and 'to' belong together: give both for a prism, none in 2D"
             )
         if self.from_ is not None and self.to is not None and not self.to > self.from_:
-            raise _problem("to", f"found {self.to:g}, must be greater than 'from' ({self.from_:g})")
+            raise problem("to", f"found {self.to:g}, must be greater than 'from' ({self.from_:g})")
         ring = shapely.Polygon(self.points)
         if not ring.is_valid or ring.area == 0.0:
             reason = shapely.is_valid_reason(ring) if not ring.is_valid else "no area"
-            raise _problem(
-                "points", f"is no simple polygon ({reason}): order the corners around it"
-            )
+            raise problem("points", f"is no simple polygon ({reason}): order the corners around it")
         return self
 
     def distance(self, points: FloatArray) -> FloatArray:
@@ -312,134 +312,3 @@ class Polygon(Shape):
 
     def dimensions(self) -> set[int]:
         return {2} if self.from_ is None else {3}
-
-
-class Difference(Shape):
-    """One shape less others, on the lattice of the first."""
-
-    of: ShapeTable
-    minus: tuple[ShapeTable, ...] = Field(min_length=1)
-
-    def distance(self, points: FloatArray) -> FloatArray:
-        cuts = [-s.shape.distance(points) for s in self.minus]
-        return np.maximum.reduce([self.of.shape.distance(points), *cuts])
-
-    def bounds(self, thickness: float = 0.0) -> Bounds:
-        return self.of.shape.bounds(thickness)
-
-    def size(self) -> float:
-        return self.of.shape.size()
-
-    def dimensions(self) -> set[int]:
-        return set.intersection(*(s.shape.dimensions() for s in (self.of, *self.minus)))
-
-    def axes(self, spacing: float, layers: int = 0) -> list[Axis]:
-        return self.of.shape.axes(spacing, layers)
-
-
-def _function(value: Any) -> Any:
-    if isinstance(value, str):
-        return Expression(value)
-    if isinstance(value, Expression) or callable(value):
-        return value
-    raise ValueError(
-        f"found {shown(value)}, must be an expression in quotes or, in Python, a function"
-    )
-
-
-class Function(_FromTo):
-    """Where a function of position is negative, within a box: the function need not be a distance.
-
-    In Python ``value`` may be a callable from positions (m, D) to values (m,).
-    """
-
-    value: Annotated[
-        Expression | Callable[[FloatArray], FloatArray],
-        PlainValidator(_function),
-        WithJsonSchema({"type": "string"}),
-    ] = Field(description='expression of x, y, z: negative inside, e.g. "hypot(x, y) - 0.1"')
-
-    def distance(self, points: FloatArray) -> FloatArray:
-        value = np.asarray(self.value(points), np.float64)
-        if value.shape != (len(points),) or not np.isfinite(value).all():
-            raise _problem(
-                "function.value",
-                f"gave {'values that are not finite' if value.shape == (len(points),) else f'an array of shape {value.shape}'}"
-                f" for {len(points)} points: return one finite number for each",
-            )
-        return np.maximum(value, distance.box(points, *self.bounds()))
-
-
-class ShapeTable(Model):
-    """A shape as a scene file writes it: a table with exactly one key, the kind of shape."""
-
-    model_config = ConfigDict(json_schema_extra={"minProperties": 1, "maxProperties": 1})
-
-    box: Box | None = None
-    sphere: Sphere | None = None
-    disc: Disc | None = None
-    cylinder: Cylinder | None = None
-    polygon: Polygon | None = None
-    tank: Tank | None = None
-    union: tuple[ShapeTable, ...] | None = Field(None, min_length=1)
-    difference: Difference | None = None
-    function: Function | None = None
-
-    @model_validator(mode="before")
-    @classmethod
-    def _bare(cls, data: Any) -> Any:
-        """In Python a shape may stand for its table."""
-        if isinstance(data, Union):
-            return {"union": data.parts}
-        if isinstance(data, Shape):
-            return {type(data).__name__.lower(): data}
-        return data
-
-    @model_validator(mode="after")
-    def _exactly_one(self) -> ShapeTable:
-        given = [k for k in type(self).model_fields if getattr(self, k) is not None]
-        if len(given) != 1:
-            found = f"found {' and '.join(given)}" if given else "is empty"
-            kinds = ", ".join(type(self).model_fields)
-            raise SceneError(problems=[Problem((), f"{found}, must be exactly one of {kinds}")])
-        return self
-
-    @property
-    def kind(self) -> str:
-        """The one key that is given."""
-        return next(k for k in type(self).model_fields if getattr(self, k) is not None)
-
-    @property
-    def shape(self) -> Shape:
-        """The shape itself."""
-        part = getattr(self, self.kind)
-        return part if isinstance(part, Shape) else Union(part)
-
-
-class Union(Shape):
-    """Several shapes as one. ``parts`` are shapes or their tables."""
-
-    parts: tuple[ShapeTable, ...] = Field(min_length=1)
-
-    def __init__(self, parts: Sequence[Any] = (), **data: Any) -> None:
-        super().__init__(parts=parts, **data)
-
-    def distance(self, points: FloatArray) -> FloatArray:
-        return np.minimum.reduce([s.shape.distance(points) for s in self.parts])
-
-    def bounds(self, thickness: float = 0.0) -> Bounds:
-        corners = [s.shape.bounds(thickness) for s in self.parts]
-        return (
-            np.min([low for low, _ in corners], axis=0),
-            np.max([high for _, high in corners], axis=0),
-        )
-
-    def size(self) -> float:
-        return sum(s.shape.size() for s in self.parts)
-
-    def dimensions(self) -> set[int]:
-        return set.intersection(*(s.shape.dimensions() for s in self.parts))
-
-
-Difference.model_rebuild()
-ShapeTable.model_rebuild()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import tomlkit
 from tomlkit.items import AoT, InlineTable, Item, Table
 
 from kolk.errors import Problem, SceneError
+from kolk.output.atomic import write_text
 
 from .arrays import Particles
 from .expression import Expression
@@ -51,9 +51,7 @@ def save(scene: Scene, path: Path) -> None:
                     entry.pop(key, None)
                 entry["sound_speed"] = scene.sound_speed
             entry["particles"] = file.name
-    part = path.with_name(path.name + ".part")
-    part.write_text(_text(data), encoding="utf-8")
-    os.replace(part, path)
+    write_text(path, _text(data), "write the scene")
 
 
 def _beyond_text(scene: Scene) -> list[tuple[str, ...]]:
