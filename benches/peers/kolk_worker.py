@@ -10,18 +10,14 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-from scenes import Scene, make, vortex_pressure, vortex_velocity
+from scenes import Scene, make, vortex_pressure
 from worker import FRONTS, WARM_UP, Clock, Job, Record, leave, parse_job, peak_bytes
 
 import kolk
 
 
-def origin(scene: Scene) -> list[float]:
-    return [0.0] * scene.dimension
-
-
 def as_kolk(scene: Scene) -> kolk.Scene:
-    """The same scene in kolk's terms; kolk fills the shapes with the same lattice."""
+    """The same scene in kolk's terms."""
     shared: dict[str, Any] = {
         "name": scene.name.replace(" ", "-").lower(),
         "dimension": scene.dimension,
@@ -30,29 +26,43 @@ def as_kolk(scene: Scene) -> kolk.Scene:
         "kernel": scene.kernel,
         "until": scene.until,
     }
-    box = {"box": {"from": origin(scene), "to": list(scene.box)}}
-    water: dict[str, Any] = {
-        "name": "water",
-        "shape": box,
-        "density": scene.density,
-        "sound_speed": scene.sound_speed,
-    }
-    if scene.tank is None:
-        water |= {
-            "viscosity": {"laminar": scene.viscosity},
-            "velocity": lambda position: vortex_velocity(position, 0.0),
-            "pressure": vortex_pressure,
-        }
-        periodic = {"x": [0.0, 1.0], "y": [0.0, 1.0]}
-        numerics = {"density_diffusion": "antuono", "shifting": "lind"}
-        return kolk.Scene(**shared, periodic=periodic, fluid=[water], numerics=numerics)
-    water["viscosity"] = {"artificial": scene.alpha}
-    tank = {"from": origin(scene), "to": list(scene.tank), "open": ["top"]}
+    return vortex(scene, shared) if scene.tank is None else dam_break(scene, scene.tank, shared)
+
+
+def vortex(scene: Scene, shared: dict[str, Any]) -> kolk.Scene:
+    water = kolk.Fluid.from_arrays(
+        scene.fluid,
+        scene.velocity,
+        name="water",
+        reference_density=scene.density,
+        sound_speed=scene.sound_speed,
+        viscosity={"laminar": scene.viscosity},
+        pressure=vortex_pressure,
+    )
     return kolk.Scene(
         **shared,
-        gravity=[0.0] * (scene.dimension - 1) + [-scene.gravity],
+        periodic={"x": [0.0, 1.0], "y": [0.0, 1.0]},
         fluid=[water],
-        wall=[{"name": "tank", "shape": {"tank": tank}}],
+        numerics={"density_diffusion": "antuono", "shifting": "lind"},
+    )
+
+
+def dam_break(scene: Scene, tank: tuple[float, ...], shared: dict[str, Any]) -> kolk.Scene:
+    """kolk fills the shapes with the lattice of `scenes`."""
+    origin = [0.0] * scene.dimension
+    water = {
+        "name": "water",
+        "shape": {"box": {"from": origin, "to": list(scene.box)}},
+        "density": scene.density,
+        "sound_speed": scene.sound_speed,
+        "viscosity": {"artificial": scene.alpha},
+    }
+    walls = {"from": origin, "to": list(tank), "open": ["top"]}
+    return kolk.Scene(
+        **shared,
+        gravity=[*origin[1:], -scene.gravity],
+        fluid=[water],
+        wall=[{"name": "tank", "shape": {"tank": walls}}],
         numerics={"density_diffusion": "fourtakas"},
     )
 
