@@ -12,7 +12,6 @@ from kolk.references import Reference
 
 from .align import arrival_level, shift_at_arrival
 from .result import ComparisonResult
-from .scales import Scales
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -36,27 +35,38 @@ class Aligned:
     reference_arrival: float
 
 
-def align(time: FloatArray, value: FloatArray, reference: Reference, scales: Scales) -> Aligned:
+def align(
+    time: FloatArray,
+    value: FloatArray,
+    reference: Reference,
+    scale_time: float,
+    scale_value: float,
+) -> Aligned:
     """The record (s, SI value) in the scales of ``reference``, shifted to arrive together.
 
-    The column compared is ``median`` of a band, else the reference's only column.
+    scale_time, scale_value: SI values of one of the reference's units. The column compared is ``median`` of a band, else the reference's only column.
     """
     column = "median" if "median" in reference.columns else reference.columns[0]
-    t = time / scales.of(reference.units["time"])
-    p = value / scales.of(reference.units[column])
+    t, p = time / scale_time, value / scale_value
     shift, ours, theirs = shift_at_arrival(t, p, reference.time, reference.values(column))
     shift = shift if math.isfinite(shift) else 0.0
     return Aligned(t + shift, p, shift, ours, theirs)
 
 
 def compare_band(
-    probe: str, time: FloatArray, value: FloatArray, reference: Reference, scales: Scales
+    probe: str,
+    time: FloatArray,
+    value: FloatArray,
+    reference: Reference,
+    scale_time: float,
+    scale_value: float,
 ) -> list[ComparisonResult]:
     """Arrival, share of time inside the band, first peak and its time.
 
-    time (n,) s and value (n,) Pa of one probe; the reference has columns low, median and high.
+    time (n,) s and value (n,) Pa of one probe; the reference has columns low, median and high in
+    units of ``scale_time`` s and ``scale_value`` Pa.
     """
-    run = align(time, value, reference, scales)
+    run = align(time, value, reference, scale_time, scale_value)
     unit = reference.units["time"]
     if not math.isfinite(run.arrival):
         level = arrival_level(reference.values("median"))

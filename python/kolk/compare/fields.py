@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Protocol
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -19,18 +19,17 @@ FloatArray = npt.NDArray[np.float64]
 class FrameLike(Protocol):
     """What a comparison or a picture needs of a frame."""
 
+    time: float
+
     @property
-    def time(self) -> float: ...
-    @property
-    def position(self) -> FloatArray: ...
-    @property
-    def is_fluid(self) -> npt.NDArray[np.bool_]: ...
-    def field(self, name: str) -> FloatArray: ...
+    def position(self) -> npt.NDArray[Any]: ...
+    def rows(self, kind: str) -> npt.NDArray[np.bool_]: ...
+    def field(self, name: str) -> npt.NDArray[Any]: ...
 
 
 def fluid(frame: FrameLike, *names: str) -> list[FloatArray]:
     """Positions (m, D) of the fluid particles of a frame, then each field (m,) or (m, D)."""
-    wet = np.asarray(frame.is_fluid, bool)
+    wet = frame.rows("fluid")
     return [np.asarray(frame.position, np.float64)[wet]] + [
         np.asarray(frame.field(name), np.float64)[wet] for name in names
     ]

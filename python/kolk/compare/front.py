@@ -12,7 +12,6 @@ from kolk.references import Reference
 
 from .align import crossing
 from .result import ComparisonResult
-from .scales import Scales
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -31,13 +30,20 @@ class AlignedFront:
 
 
 def align_front(
-    time: FloatArray, front: FloatArray, reference: Reference, scales: Scales
+    time: FloatArray,
+    front: FloatArray,
+    reference: Reference,
+    scale_time: float,
+    width: float,
+    aligned_at: float = ALIGNED_AT,
 ) -> AlignedFront:
-    """Front (m from the wall behind the column) against time (s), aligned at ALIGNED_AT."""
-    t = time / scales.of(reference.units["time"])
-    z = front / scales.of(reference.units["front"])
-    ours = crossing(t, z, ALIGNED_AT)
-    shift = crossing(reference.time, reference.values("front"), ALIGNED_AT) - ours
+    """Front (m from the wall behind the column) against time (s), aligned at ``aligned_at``.
+
+    scale_time: s per unit of the reference's time; width: of the column, m.
+    """
+    t, z = time / scale_time, front / width
+    ours = crossing(t, z, aligned_at)
+    shift = crossing(reference.time, reference.values("front"), aligned_at) - ours
     return AlignedFront(t + (shift if math.isfinite(shift) else 0.0), z, shift)
 
 
@@ -46,16 +52,19 @@ def compare_front(
     time: FloatArray,
     front: FloatArray,
     reference: Reference,
-    scales: Scales,
+    scale_time: float,
+    width: float,
     *,
+    aligned_at: float = ALIGNED_AT,
     until: float = math.inf,
 ) -> list[ComparisonResult]:
     """RMS distance of the fronts, in column widths, over the times that both records cover.
 
-    time (n,) s; front (n,) m from the wall behind the column. ``until``: the last front position
+    time (n,) s; front (n,) m from the wall behind the column; scale_time: s per unit of the
+    reference's time; width: of the column, m. ``until``: the last front position
     of the run that counts, in column widths (the far wall of the tank stops the run's front).
     """
-    run = align_front(time, front, reference, scales)
+    run = align_front(time, front, reference, scale_time, width, aligned_at)
     if not math.isfinite(run.shift):
         return [
             ComparisonResult(
@@ -66,7 +75,7 @@ def compare_front(
                 unit="a",
                 sentence=(
                     f"{probe}: the front stops at {run.front.max():.2f} a; it must pass "
-                    f"{ALIGNED_AT} a to be set beside {reference.title}: run longer."
+                    f"{aligned_at} a to be set beside {reference.title}: run longer."
                 ),
                 source=reference.title,
             )
@@ -90,7 +99,7 @@ def compare_front(
             sentence=(
                 f"{probe}: the surge front is {rms:.3f} a RMS from {reference.title} over "
                 f"{len(t)} points from {z[0]:.2f} to {z[-1]:.2f} a (mean {error.mean():+.3f}), "
-                f"aligned at {ALIGNED_AT} a by a shift of {run.shift:+.2f} {unit}."
+                f"aligned at {aligned_at} a by a shift of {run.shift:+.2f} {unit}."
             ),
             source=reference.title,
             details={

@@ -10,7 +10,6 @@ import numpy.typing as npt
 from kolk.references import Reference
 
 from .result import ComparisonResult
-from .scales import Scales
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -21,19 +20,21 @@ def compare_series(
     value: FloatArray,
     reference: Reference,
     column: str,
-    scales: Scales,
+    scale_time: float = 1.0,
+    scale_value: float = 1.0,
     *,
     shift: float = 0.0,
 ) -> list[ComparisonResult]:
     """RMS distance, and the peaks with their times.
 
-    time (n,) s and value (n,) SI of one probe; ``column`` of the reference. ``shift`` is added to
+    time (n,) s and value (n,) SI of one probe; ``column`` of the reference, in units of
+    ``scale_time`` s and ``scale_value``. ``shift`` is added to
     the run's clock, in the unit of the reference's. The RMS is taken over the reference's own
     points that the run covers; the peaks over the stretch of time that both cover.
     """
     unit, clock = reference.units[column], reference.units["time"]
-    t = time / scales.of(clock) + shift
-    ours = value / scales.of(unit)
+    t = time / scale_time + shift
+    ours = value / scale_value
     used = (reference.time >= t[0]) & (reference.time <= t[-1])
     theirs = reference.values(column)[used]
     if used.sum() < 2:
@@ -68,7 +69,11 @@ def compare_series(
                 f"{shifted} ({rms / abs(peak):.0%} of its peak)."
             ),
             source=reference.title,
-            details={"relative_to_peak": rms / abs(peak), "mean_error": float(error.mean()), "to": end},
+            details={
+                "relative_to_peak": rms / abs(peak),
+                "mean_error": float(error.mean()),
+                "to": end,
+            },
         )
     ]
     if peak_time <= t[-1]:

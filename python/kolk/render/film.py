@@ -14,13 +14,13 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from kolk.compare.fields import FrameLike
-from kolk.compare.scales import Scales
 from kolk.output.atomic import replacing
 
 from . import style
 from .flow import panel
 from .plane import Extent, Painter, extent
-from .quantity import Quantity, colour_range, quantity, spread, time_label
+from .quantity import Quantity, Scales, colour_range, quantity, spread, time_label
+from .raster import Image, over
 
 Picture = npt.NDArray[np.uint8]
 """(height, width, 3), both even."""
@@ -76,30 +76,58 @@ def _pictures(
     area: Extent,
     surroundings: tuple[Figure, Axes],
 ) -> Iterator[Picture]:
-    made, axes = surroundings
     with style.look():
-        canvas = made.canvas
-        assert isinstance(canvas, FigureCanvasAgg)
-        clock = axes.text(
-            1.0, 1.02, "", transform=axes.transAxes, ha="right", va="bottom", fontsize=9, animated=True
-        )
-        canvas.draw()
-        ground = canvas.copy_from_bbox(made.bbox)
-        box = axes.get_window_extent()
-        painter = Painter(area.view(round(box.width)), spacing)
-        left, top = round(box.x0), round(made.bbox.height - box.y1)
+        stage = Stage(*surroundings)
+        painter = Painter(area.view(stage.width), spacing)
         for frame in frames:
-            canvas.restore_region(ground)
-            clock.set_text(time_label(frame.time, scales))
-            made.draw_artist(clock)
-            picture = np.asarray(canvas.buffer_rgba())[..., :3].copy()
-            image = painter(frame, shown, scale)
-            target = picture[top : top + image.shape[0], left : left + image.shape[1]]
-            target[:] = image[: target.shape[0], : target.shape[1]] * 255.0 + 0.5
-            yield picture
+            yield stage.picture(painter(frame, shown, scale), time_label(frame.time, scales))
 
 
-def write_film(path: Path, pictures: Iterator[Picture], count: int, tick: Tick = lambda: None) -> Path:
+class Stage:
+    """The surroundings of a film, drawn once; each frame replaces the picture and the time.
+
+    Made and used inside :func:`kolk.render.style.look`, on a figure of even pixel counts.
+    """
+
+    def __init__(self, made: Figure, axes: Axes) -> None:
+        self._made = made
+        assert isinstance(made.canvas, FigureCanvasAgg)
+        self._canvas = made.canvas
+        self._clock = axes.text(
+            1.0,
+            1.02,
+            "",
+            transform=axes.transAxes,
+            ha="right",
+            va="bottom",
+            fontsize=9,
+            animated=True,
+        )
+        self._canvas.draw()
+        self._ground = self._canvas.copy_from_bbox(made.bbox)
+        box = axes.get_window_extent()
+        self._left, self._top = round(box.x0), round(made.bbox.height - box.y1)
+        self.width = round(box.width)
+        """Pixels that a picture is wide."""
+
+    def picture(self, image: Image, label: str) -> Picture:
+        """The whole frame: ``image`` (height, width, 3), or 4 premultiplied, in its place."""
+        self._canvas.restore_region(self._ground)
+        self._clock.set_text(label)
+        self._made.draw_artist(self._clock)
+        whole = np.asarray(self._canvas.buffer_rgba())[..., :3].copy()
+        height, width = image.shape[:2]
+        place = whole[self._top : self._top + height, self._left : self._left + width]
+        image = image[: place.shape[0], : place.shape[1]]
+        if image.shape[2] == 4:
+            image = over(image, place.astype(np.float32) / np.float32(255.0))
+        place[:] = image * 255.0 + 0.5
+        return whole
+
+
+def write_film(
+    path: Path, pictures: Iterator[Picture], count: int, tick: Tick = lambda: None
+) -> Path:
     """Writes pictures as .mp4 (H.264) or .gif, whole or not at all. ``count``: how many."""
     path.parent.mkdir(parents=True, exist_ok=True)
     rate = frames_per_second(count)

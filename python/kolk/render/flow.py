@@ -11,11 +11,10 @@ from matplotlib.colors import Normalize
 from matplotlib.figure import Figure
 
 from kolk.compare.fields import FrameLike
-from kolk.compare.scales import Scales
 
 from . import style
 from .plane import Extent, Painter, extent
-from .quantity import Quantity, colour_range, quantity, spread, time_label
+from .quantity import Quantity, Scales, colour_range, quantity, spread, time_label
 
 LEFT, RIGHT, BOTTOM, TOP, GAP = 0.55, 0.2, 0.5, 1.2, 0.36
 """Margins of a sheet and the gap between its panels, inches."""
@@ -62,7 +61,7 @@ def panel(
     _dress(axes, area)
     axes.set_title(title)
     bar = made.add_axes((LEFT / width, 0.42 / height, min(3.2, inner) / width, 0.1 / height))
-    _colour_bar(made, bar, shown, shown_range)
+    colour_bar(made, bar, shown, shown_range)
     return made, axes
 
 
@@ -116,7 +115,7 @@ def flow_sheet(
                 bar = made.add_axes(
                     ((width - right + 0.2) / width, y / height, 0.1 / width, tall / height)
                 )
-            _colour_bar(made, bar, each, ranges[k], horizontal=wide)
+            colour_bar(made, bar, each, ranges[k], horizontal=wide)
         return style.save(made, path)
 
 
@@ -142,9 +141,10 @@ def _dress(axes: Axes, area: Extent, *, left: bool = True, bottom: bool = True) 
         axes.set_xlabel("x [m]")
 
 
-def _colour_bar(
+def colour_bar(
     made: Figure, axes: Axes, shown: Quantity, shown_range: Normalize, *, horizontal: bool = True
 ) -> None:
+    """A colour bar without a frame, labelled with the quantity."""
     bar = made.colorbar(
         ScalarMappable(shown_range, style.colours(shown.name)),
         cax=axes,
@@ -155,4 +155,3 @@ def _colour_bar(
     bar.ax.tick_params(length=0, pad=2)
     bar.ax.locator_params(nbins=5)
     bar.set_label(shown.label, labelpad=2)
-

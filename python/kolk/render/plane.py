@@ -49,8 +49,8 @@ def extent(frames: Sequence[FrameLike], spacing: float) -> Extent:
     Without walls the fluid of the frames given. With walls, fluid that has left them by more than
     a quarter of their size is cut off: a drop that flies away must not shrink the picture.
     """
-    low, high = _box([np.asarray(f.position)[np.asarray(f.is_fluid, bool)] for f in frames])
-    walls = np.asarray(frames[0].position)[~np.asarray(frames[0].is_fluid, bool)]
+    low, high = _box([f.position[f.rows("fluid")] for f in frames])
+    walls = frames[0].position[frames[0].rows("wall")]
     if len(walls):
         wall_low, wall_high = walls.min(axis=0), walls.max(axis=0)
         slack = 0.25 * (wall_high - wall_low)
@@ -84,7 +84,7 @@ class Painter:
         return over(picture, self._walls(frame))
 
     def _walls(self, frame: FrameLike) -> Image:
-        walls = np.asarray(frame.position)[~np.asarray(frame.is_fluid, bool)][:, :2]
+        walls = frame.position[frame.rows("wall")][:, :2]
         if self._wall_position is None or not np.array_equal(walls, self._wall_position):
             grey = np.broadcast_to(np.array(to_rgb(style.WALL), np.float32), (len(walls), 3))
             white = np.ones((self.view.height, self.view.width, 3), np.float32)

@@ -11,9 +11,33 @@ import numpy.typing as npt
 from matplotlib.colors import Normalize
 
 from kolk.compare.fields import FrameLike, fluid
-from kolk.compare.scales import Scales
 
 FloatArray = npt.NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class Scales:
+    """Sizes that make pictures of a case dimensionless, as its experiment does; SI."""
+
+    depth: float
+    """H, m."""
+    gravity: float
+    density: float
+
+    @property
+    def time(self) -> float:
+        """sqrt(H/g), s."""
+        return math.sqrt(self.depth / self.gravity)
+
+    @property
+    def speed(self) -> float:
+        """sqrt(g H), m/s."""
+        return math.sqrt(self.gravity * self.depth)
+
+    @property
+    def pressure(self) -> float:
+        """rho g H, Pa."""
+        return self.density * self.gravity * self.depth
 
 
 @dataclass(frozen=True)
@@ -38,12 +62,11 @@ def quantity(name: str, scales: Scales | None = None) -> Quantity:
     """``speed``, ``pressure`` or ``density``; dimensionless where the case has scales."""
     if name == "speed":
         if scales:
-            unit = math.sqrt(scales.gravity * scales.length)
-            return Quantity(name, r"speed / $\sqrt{gH}$", unit)
+            return Quantity(name, r"speed / $\sqrt{gH}$", scales.speed)
         return Quantity(name, "speed [m/s]", 1.0)
     if name == "pressure":
         if scales:
-            return Quantity(name, r"pressure / $\rho g H$", scales.of("rho g H"))
+            return Quantity(name, r"pressure / $\rho g H$", scales.pressure)
         return Quantity(name, "pressure [kPa]", 1000.0)
     return Quantity(name, f"{name} [kg/m³]" if name == "density" else name, 1.0)
 
@@ -65,7 +88,7 @@ def time_label(time: float, scales: Scales | None = None) -> str:
     """``t = 0.42 s`` and, where the case has scales, the same in sqrt(H/g)."""
     text = f"t = {time:.3g} s" if time < 0.1 else f"t = {time:.2f} s"
     if scales:
-        text += rf"  ({time / scales.of('sqrt(H/g)'):.2f} $\sqrt{{H/g}}$)"
+        text += rf"  ({time / scales.time:.2f} $\sqrt{{H/g}}$)"
     return text
 
 

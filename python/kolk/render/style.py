@@ -152,5 +152,7 @@ def _oklab_to_srgb(lab: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
         ]
     )
     linear = np.clip((lab @ to_lms.T) ** 3 @ to_rgb.T, 0.0, 1.0)
-    curved = 1.055 * np.power(linear, 1.0 / 2.4, where=linear > 0, out=np.zeros_like(linear)) - 0.055
+    curved = (
+        1.055 * np.power(linear, 1.0 / 2.4, where=linear > 0, out=np.zeros_like(linear)) - 0.055
+    )
     return np.clip(np.where(linear <= 0.0031308, 12.92 * linear, curved), 0.0, 1.0)
