@@ -45,7 +45,7 @@ if TYPE_CHECKING:
     from kolk.scene import Probe as Probe
     from kolk.scene import Scene as Scene
     from kolk.scene import Wall as Wall
-    from kolk.scene import load as load
+    from kolk.scene.load import load as load
     from kolk.simulation import Simulation as Simulation
 
 _HOMES = {

@@ -36,8 +36,8 @@ Array = NDArray[Any]
 class BodyFrame:
     """One body in one frame: NumPy arrays in the stable order of its particles.
 
-    position (n, D) float64, m; velocity (n, D) float32, m/s; density, pressure (n,) float32, SI;
-    mass (n,) float64, kg. A field that the scene's `output.fields` left out raises `KeyError`.
+    position (n, D), m, float32 where that resolves a ten-thousandth of the spacing, else float64;
+    velocity (n, D), density, pressure (n,) float32, SI; mass (n,) float64, kg. A field that the scene's `output.fields` left out raises `KeyError`.
     """
 
     def __init__(self, frame: Frame, body: BodyRange) -> None:

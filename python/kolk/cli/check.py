@@ -17,12 +17,16 @@ def check(
     spacing: Spacing = None,
     settings: Settings = None,
     picture: Annotated[
-        Path | None,
-        typer.Option("--picture", help="Draw the set-up into this file.", metavar="PNG"),
+        bool, typer.Option("--picture", help="Draw the set-up, into NAME-set-up.png.")
+    ] = False,
+    out: Annotated[
+        Path | None, typer.Option("--out", help="Draw the set-up into this file.", metavar="PNG")
     ] = None,
 ) -> None:
     """Validate and describe a scene without running it."""
-    from kolk.check import describe
+    from kolk import check as checking
 
     found = find_scene(scene, settings or [], spacing=spacing)
-    print(describe(found))
+    print(checking.describe(found))
+    if picture or out is not None:
+        print(checking.picture(found, out or Path(f"{found.name}-set-up.png")))

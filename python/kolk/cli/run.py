@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Annotated, cast
+from typing import TYPE_CHECKING, Annotated, cast
 
 import typer
 
 from kolk.cli.gate import gated
 from kolk.cli.scenes import SceneWord, Settings, Spacing, find_scene, run_folder
+from kolk.simulation import DEFAULT_PRECISION
+
+if TYPE_CHECKING:
+    from kolk.simulation import Precision
 
 
 @gated
@@ -27,7 +31,7 @@ def run(
     threads: Annotated[int, typer.Option("--threads", help="0: every core.")] = 0,
     precision: Annotated[
         str, typer.Option("--precision", help="f64, or mixed: pair arithmetic in f32.")
-    ] = "f64",
+    ] = DEFAULT_PRECISION,
     settings: Settings = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the run in the folder.")
@@ -53,7 +57,7 @@ def run(
     finished = runner.run(
         found,
         out,
-        precision=cast(runner.Precision, precision),
+        precision=cast("Precision", precision),
         threads=threads,
         resume=resume,
         force=force,

@@ -228,4 +228,13 @@ class Recorder:
             bodies=body_ranges([(b.name, b.kind, len(b.mass)) for b in bodies]),
             changing={name: COMPONENTS[name] for name in self._fields if name in COMPONENTS},
             constant=constant,
+            points=_point_type(
+                max(float(np.max(np.abs(b.position))) for b in bodies),
+                self.simulation.scene.spacing,
+            ),
         )
+
+
+def _point_type(farthest: float, spacing: float) -> str:
+    """Type of the positions in frames: float32 where it resolves 1e-4 of the spacing."""
+    return "f4" if farthest * float(np.finfo(np.float32).eps) < 1e-4 * spacing else "f8"

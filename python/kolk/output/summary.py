@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from kolk.output.tables import read_columns
+
 if TYPE_CHECKING:
     from kolk.output.recorder import Recorder
     from kolk.simulation import Simulation
@@ -99,10 +101,7 @@ def stability_report(history: Path, mach_left_range: bool) -> dict[str, Any]:
 
     history: the run's `history.csv`; the report holds the extremes over its rows.
     """
-    with history.open(encoding="utf-8") as file:
-        columns = file.readline().strip().split(",")
-        rows = np.loadtxt(file, delimiter=",", ndmin=2)
-    table = dict(zip(columns, rows.T, strict=True))
+    table = read_columns(history)
     largest = ("mach", "speed_max", "density_max", "pressure_max")
     smallest = ("density_min", "pressure_min", "closest_pair")
     return {

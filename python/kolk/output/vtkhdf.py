@@ -1,8 +1,8 @@
 """`fields.vtkhdf`: the frames of a run as a transient VTKHDF file of particles (PolyData vertices).
 
-Opens in ParaView 5.12 and later and in VTK 9.3 and later. Points are float64 and padded to three
-components, fields float32, and arrays that never change (mass, body, kind, id) are stored once:
-their `PointDataOffsets` are 0 at every step.
+Opens in ParaView 5.12 and later and in VTK 9.3 and later. Points are padded to three components and
+float32 where that resolves them (see `FieldsLayout.points`), fields float32, and arrays that never
+change (mass, body, kind, id) are stored once: their `PointDataOffsets` are 0 at every step.
 
 **Why a kill at any moment leaves every earlier frame readable.** The file is created as a whole,
 under another name, with room for every planned frame: contiguous datasets, allocated but not
@@ -57,13 +57,15 @@ class FieldsLayout:
     """What every frame holds.
 
     dimension: 2 or 3. bodies: in row order. changing: field -> components (1 or 3), float32.
-    constant: field -> (n,) array, stored once.
+    constant: field -> (n,) array, stored once. points: type of the positions, "f4" or "f8"; "f4" is
+    half as large and right where its steps are far smaller than the particles' spacing.
     """
 
     dimension: int
     bodies: tuple[BodyRange, ...]
     changing: Mapping[str, int]
     constant: Mapping[str, NDArray[Any]]
+    points: str = "f8"
 
     @property
     def count(self) -> int:
@@ -233,6 +235,7 @@ def read_layout(path: Path) -> tuple[FieldsLayout, int, int]:
             bodies=tuple(BodyRange(**body) for body in about["bodies"]),
             changing={name: int(size) for name, size in about["changing"].items()},
             constant={name: data[name][...] for name in about["constant"]},
+            points=str(about["points"]),
         )
         frames = int(file["VTKHDF/Steps"].attrs["NSteps"])
         return layout, int(about["capacity"]), frames
@@ -253,6 +256,7 @@ def _build_padded(path: Path, layout: FieldsLayout, capacity: int, padding: int)
         "bodies": [asdict(body) for body in layout.bodies],
         "changing": dict(layout.changing),
         "constant": list(layout.constant),
+        "points": layout.points,
         "capacity": capacity,
     }
     steps = np.arange(capacity, dtype=np.int64)
@@ -294,7 +298,7 @@ def _build_padded(path: Path, layout: FieldsLayout, capacity: int, padding: int)
             shape = (capacity * layout.count, *([components] if components > 1 else []))
             _reserve(data, name, shape, "f4")
             offsets[name] = rows
-        _reserve(root, "Points", (capacity * layout.count, 3), "f8")
+        _reserve(root, "Points", (capacity * layout.count, 3), layout.points)
 
 
 def _reserve(group: Any, name: str, shape: tuple[int, ...], kind: str) -> None:
