@@ -302,13 +302,8 @@ class Execution:
     def _draw(self, result: Run) -> None:
         from kolk.render import render_run
 
-        made = render_run(result, film=True)
-        missing = missing_picture_libraries(self.simulation.dimension)
-        if missing:
-            self.notes.append(
-                f"without {' and '.join(missing)} some pictures or films are missing or plainer; "
-                "pip install 'kolk[pictures]' brings them"
-            )
+        made = render_run(result, film=True, quiet=self.quiet)
+        self.notes += missing_picture_libraries(self.simulation.dimension)
         self._log.write(f"{len(made)} pictures in {self.folder.pictures}")
 
     def _attempt(self, what: str, action: Callable[[], None]) -> None:
@@ -321,13 +316,10 @@ class Execution:
 
 
 def missing_picture_libraries(dimension: int) -> list[str]:
-    """Packages of the extra `pictures` that this machine lacks for a run of a dimension."""
-    from importlib.util import find_spec
+    """What this machine lacks for the pictures of a run, a line each, and how to install it."""
+    from kolk.render import missing
 
-    wanted = {"imageio": "imageio", "imageio_ffmpeg": "imageio-ffmpeg"}
-    if dimension == 3:
-        wanted |= {"pyvista": "pyvista", "pysplashsurf": "pysplashsurf"}
-    return [name for module, name in wanted.items() if find_spec(module) is None]
+    return [line for line in missing() if dimension == 3 or "three-dimensional" not in line]
 
 
 def write_scene(scene: Scene, folder: RunFolder) -> None:

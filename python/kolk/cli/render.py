@@ -29,12 +29,7 @@ def render(
     named = None if Path(run).exists() else newest_folder(run)
     found = Run(named.path if named else run)
     made = render_run(found, film=film)
-    missing = missing_picture_libraries(found.frames[0].dimension)
-    if missing:
-        print(
-            f"kolk: without {' and '.join(missing)} some pictures or films are missing or plainer; "
-            "pip install 'kolk[pictures]' brings them",
-            file=sys.stderr,
-        )
+    for line in missing_picture_libraries(found.frames[0].dimension):
+        print(f"kolk: {line}", file=sys.stderr)
     for path in made:
         print(path)
