@@ -44,7 +44,8 @@ def align(
 ) -> Aligned:
     """The record (s, SI value) in the scales of ``reference``, shifted to arrive together.
 
-    scale_time, scale_value: SI values of one of the reference's units. The column compared is ``median`` of a band, else the reference's only column.
+    scale_time, scale_value: SI values of one of the reference's units. The column compared is
+    ``median`` of a band, else the reference's only column.
     """
     column = "median" if "median" in reference.columns else reference.columns[0]
     t, p = time / scale_time, value / scale_value

@@ -60,8 +60,8 @@ def compare_taylor_green(
             reference=expected,
             unit="1",
             sentence=(
-                f"At t = {frame.time:.3g} s the velocity (RMS) is down to {decay:.4f} of its start; "
-                f"the exact decay at Re {reynolds:.3g} is {expected:.4f} "
+                f"At t = {frame.time:.3g} s the velocity (RMS) is down to {decay:.4f} of its "
+                f"start; the exact decay at Re {reynolds:.3g} is {expected:.4f} "
                 f"({decay / expected - 1.0:+.1%})."
             ),
             source=source,

@@ -52,7 +52,7 @@ class Reference:
     @property
     def time(self) -> FloatArray:
         """Times, in ``units["time"]``, ascending."""
-        return self._table["time"].to_numpy(np.float64, copy=True)
+        return np.array(self._table["time"], np.float64)
 
     def values(self, column: str | None = None) -> FloatArray:
         """One value column; without a name, the only one.
@@ -66,7 +66,7 @@ class Reference:
                 f"reference '{self.name}' has no column {column!r}; it has "
                 f"{', '.join(self.columns)}: name one of them"
             )
-        return self._table[column].to_numpy(np.float64, copy=True)
+        return np.array(self._table[column], np.float64)
 
     def peak(self, column: str | None = None) -> tuple[float, float]:
         """Largest value and its time: of the full record where it is known, else of the table."""

@@ -36,7 +36,12 @@ UNITS = {
 
 
 def draw(
-    axes: Axes, table: pd.DataFrame, match: Comparison | None, about: str = "", shift: float = 0.0
+    axes: Axes,
+    table: pd.DataFrame,
+    match: Comparison | None,
+    about: str = "",
+    shift: float = 0.0,
+    legend: float = 8.5,
 ) -> None:
     """The record of a probe, with its reference where there is one. ``about``: axis label."""
     time = table["time"].to_numpy(np.float64)
@@ -51,7 +56,7 @@ def draw(
             _draw_front(axes, time, value, match)
         else:
             _draw_series(axes, time, value, match, shift)
-    axes.legend(loc="best", handlelength=1.6)
+    axes.legend(loc="best", handlelength=1.4, fontsize=legend)
 
 
 def _draw_plain(axes: Axes, time: FloatArray, table: pd.DataFrame, about: str) -> None:
@@ -200,9 +205,9 @@ def pressure_sheet(
     :func:`kolk.compare.common_shift`.
     """
     first, rest = matches[0], matches[1:]
-    columns = 2
+    columns = 3 if len(rest) == 3 else 2
     rows = math.ceil(len(rest) / columns)
-    width, big, small = 8.5, 3.5, 2.1
+    width, big, small = 9.5, 3.6, 2.1
     gap, top, bottom = 0.75, 0.8, 0.55
     height = top + big + rows * (small + gap) + bottom
     with style.look():
@@ -212,13 +217,13 @@ def pressure_sheet(
         axes = made.add_axes((0.08, y / height, 0.89, big / height))
         draw(axes, tables[str(first.probe)], first, shift=shift)
         axes.set_title(_sensor(first))
-        inner = (0.89 - 0.09) / columns
+        inner = (0.89 - 0.08 * (columns - 1)) / columns
         for k, match in enumerate(rest):
             row, column = divmod(k, columns)
-            x = 0.08 + column * (inner + 0.09)
+            x = 0.08 + column * (inner + 0.08)
             low = y - (row + 1) * (small + gap)
             axes = made.add_axes((x, low / height, inner, small / height))
-            draw(axes, tables[str(match.probe)], match, shift=shift)
+            draw(axes, tables[str(match.probe)], match, shift=shift, legend=7.0)
             axes.set_title(_sensor(match))
         return style.save(made, path)
 

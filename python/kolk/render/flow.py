@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
@@ -145,13 +146,13 @@ def colour_bar(
     made: Figure, axes: Axes, shown: Quantity, shown_range: Normalize, *, horizontal: bool = True
 ) -> None:
     """A colour bar without a frame, labelled with the quantity."""
-    bar = made.colorbar(
+    bar: Any = made.colorbar(
         ScalarMappable(shown_range, style.colours(shown.name)),
         cax=axes,
         orientation="horizontal" if horizontal else "vertical",
         extend="max",
     )
-    bar.outline.set_visible(False)  # type: ignore[operator]
+    bar.outline.set_visible(False)
     bar.ax.tick_params(length=0, pad=2)
     bar.ax.locator_params(nbins=5)
     bar.set_label(shown.label, labelpad=2)

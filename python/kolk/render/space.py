@@ -163,7 +163,7 @@ def space_sheet(
     rows = -(-len(chosen) // columns)
     inner = 5.2
     tall = inner / scene.camera.aspect
-    left, top, bottom, gap = 0.2, 0.85, 0.2, 0.35
+    left, top, bottom, gap = 0.25, 0.85, 0.2, 0.35
     width = 2 * left + columns * inner + (columns - 1) * gap
     height = top + rows * tall + (rows - 1) * gap + bottom
     pixels = round(inner * style.DPI)
@@ -257,12 +257,14 @@ def _dress(axes: Axes, scene: Room) -> None:
     box = corners(scene.low, scene.high)
     plane, _ = camera.project(box)
     size = scene.high - scene.low
-    # the sizes stand at the edges that meet in the lowest corner of the picture
-    lowest = int(np.argmin(plane[:, 1]))
+    # level sizes stand at the edges that meet in the lowest corner of the picture, the height
+    # at its leftmost upright edge
+    lowest, leftmost = int(np.argmin(plane[:, 1])), int(np.argmin(plane[:, 0]))
+    upright = int(np.argmax(np.abs(camera.up)))
     for axis in range(3):
-        other = lowest ^ (1 << axis)
-        middle = 0.5 * (plane[lowest] + plane[other])
-        outward = middle - plane.mean(axis=0)
+        start = leftmost if axis == upright else lowest
+        middle = 0.5 * (plane[start] + plane[start ^ (1 << axis)])
+        outward = np.array([-1.0, 0.0]) if axis == upright else middle - plane.mean(axis=0)
         outward = outward / np.linalg.norm(outward)
         axes.annotate(
             f"{size[axis]:.3g} m",
@@ -271,6 +273,7 @@ def _dress(axes: Axes, scene: Room) -> None:
             xytext=tuple(11 * outward),
             ha="center",
             va="center",
+            rotation=90.0 if axis == upright else 0.0,
             fontsize=7.5,
             color=style.QUIET,
         )

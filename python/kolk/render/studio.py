@@ -139,7 +139,7 @@ def _scales(run: RunLike) -> Scales | None:
 
 
 class Bar:
-    """A progress bar on standard error that appears after PATIENCE; none where it is no terminal."""
+    """A progress bar on standard error after PATIENCE; none where that is no terminal."""
 
     def __init__(self, total: int, quiet: bool) -> None:
         self._total = total

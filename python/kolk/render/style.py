@@ -75,9 +75,10 @@ _LOOK: dict[str, Any] = {
 def look() -> Iterator[None]:
     """Matplotlib's defaults with this style on top, whatever the session has set; undone after."""
     # backend settings stay: touching them could open or close the session's windows
-    base = {k: v for k, v in mpl.rcParamsDefault.items() if not k.startswith(("backend", "inter"))}
-    base.pop("toolbar", None)
-    with mpl.rc_context({**base, **_LOOK}):  # type: ignore[arg-type]
+    keep = ("backend", "interactive", "toolbar")
+    settings: Any = {k: v for k, v in mpl.rcParamsDefault.items() if not k.startswith(keep)}
+    settings |= _LOOK
+    with mpl.rc_context(settings):
         yield
 
 
@@ -121,10 +122,10 @@ def _depths() -> ListedColormap:
     corners = np.array(
         [
             # lightness, green-red, blue-yellow
-            [0.22, -0.010, -0.075],
-            [0.40, -0.035, -0.120],
-            [0.58, -0.075, -0.085],
-            [0.76, -0.100, -0.020],
+            [0.27, -0.012, -0.085],
+            [0.43, -0.038, -0.122],
+            [0.60, -0.076, -0.085],
+            [0.77, -0.100, -0.020],
             [0.94, -0.055, 0.055],
         ]
     )
@@ -155,4 +156,4 @@ def _oklab_to_srgb(lab: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]:
     curved = (
         1.055 * np.power(linear, 1.0 / 2.4, where=linear > 0, out=np.zeros_like(linear)) - 0.055
     )
-    return np.clip(np.where(linear <= 0.0031308, 12.92 * linear, curved), 0.0, 1.0)
+    return np.asarray(np.clip(np.where(linear <= 0.0031308, 12.92 * linear, curved), 0.0, 1.0))

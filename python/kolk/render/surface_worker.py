@@ -22,7 +22,7 @@ def main(folder: Path) -> None:
     left, right, bottom, top = scene["window"]
     width = int(scene["width"])
     height = max(round(width * (top - bottom) / (right - left)), 2)
-    plotter = pyvista.Plotter(off_screen=True, window_size=(width, height), lighting="none")
+    plotter = pyvista.Plotter(off_screen=True, window_size=[width, height], lighting="none")
     _light(plotter, pyvista, scene)
     _surroundings(plotter, pyvista, scene)
     _aim(plotter, scene, (left, right, bottom, top))
@@ -72,7 +72,7 @@ def _water(plotter: Any, pyvista: Any, position: Any, rgb: Any, spacing: float) 
         return None
     import pysplashsurf
 
-    mesh, _ = pysplashsurf.reconstruction_pipeline(
+    reconstructed: Any = pysplashsurf.reconstruction_pipeline(
         np.ascontiguousarray(position, np.float32),
         attributes_to_interpolate={"rgb": np.ascontiguousarray(rgb, np.float32)},
         particle_radius=0.5 * spacing,
@@ -86,6 +86,7 @@ def _water(plotter: Any, pyvista: Any, position: Any, rgb: Any, spacing: float) 
         compute_normals=True,
         normals_smoothing_iters=8,
     )
+    mesh = reconstructed[0]
     vertices = np.asarray(mesh.mesh.vertices)
     if not len(vertices):
         return None
