@@ -6,7 +6,7 @@ use crate::simd::Lanes;
 use std::f64::consts::PI;
 
 /// `w = 1 - 3/2 q² + 3/4 q³` on `q < 1`, `1/4 (2 - q)³` on `1 <= q < 2`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Cubic;
 
 impl Kernel for Cubic {

@@ -6,7 +6,7 @@ use crate::simd::Lanes;
 use std::f64::consts::PI;
 
 /// `w = (3 - q)⁵ - 6 (2 - q)₊⁵ + 15 (1 - q)₊⁵` on `q < 3`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct Quintic;
 
 #[inline(always)]

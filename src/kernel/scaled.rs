@@ -42,8 +42,7 @@ impl<const D: usize> Scaled<D> {
         if q >= self.support {
             return 0.0;
         }
-        let shape =
-            with_kernel!(self.name, K => if D == 1 { K::shape_1d(q) } else { K::shape(q) });
+        let shape = with_kernel!(self.name, K => if D == 1 { K::shape_1d(q) } else { K::shape(q) });
         self.of_value * shape
     }
 

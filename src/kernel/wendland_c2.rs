@@ -6,7 +6,7 @@ use crate::simd::Lanes;
 use std::f64::consts::PI;
 
 /// `w = (1 - q/2)⁴ (1 + 2q)` on `q < 2`; in one dimension `(1 - q/2)³ (1 + 3/2 q)`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC2;
 
 impl Kernel for WendlandC2 {

@@ -6,7 +6,7 @@ use crate::simd::Lanes;
 use std::f64::consts::PI;
 
 /// `w = (1 - q/2)⁶ (1 + 3q + 35/12 q²)` on `q < 2`; in one dimension `(1 - q/2)⁵ (1 + 5/2 q + 2q²)`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC4;
 
 impl Kernel for WendlandC4 {

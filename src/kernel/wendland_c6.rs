@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 
 /// `w = (1 - q/2)⁸ (1 + 4q + 25/4 q² + 4q³)` on `q < 2`; in one dimension
 /// `(1 - q/2)⁷ (1 + 7/2 q + 19/4 q² + 21/8 q³)`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct WendlandC6;
 
 impl Kernel for WendlandC6 {

@@ -103,11 +103,20 @@ impl<const D: usize> PointGrid<D> {
     /// # Panics
     /// With more than `u32::MAX` points.
     pub fn new(position: &[[f64; D]], radius: f64, periodic: &Periods<D>) -> Self {
-        assert!(u32::try_from(position.len()).is_ok(), "too many points: {}", position.len());
+        assert!(
+            u32::try_from(position.len()).is_ok(),
+            "too many points: {}",
+            position.len()
+        );
         let axes = lay_axes(position, radius, periodic);
-        let cells = axes.iter().map(|axis| axis.count as usize).product::<usize>();
+        let cells = axes
+            .iter()
+            .map(|axis| axis.count as usize)
+            .product::<usize>();
         let cell_of = |x: &[f64; D]| {
-            (0..D).fold(0, |cell, a| cell * axes[a].count as usize + axes[a].cell(x[a])) as u32
+            (0..D).fold(0, |cell, a| {
+                cell * axes[a].count as usize + axes[a].cell(x[a])
+            }) as u32
         };
         let cell: Vec<u32> = position.par_iter().map(cell_of).collect();
         let mut starts = vec![0; cells + 1];
@@ -125,7 +134,13 @@ impl<const D: usize> PointGrid<D> {
             *place += 1;
         }
         let sorted = order.par_iter().map(|&i| position[i as usize]).collect();
-        Self { radius_squared: radius * radius, axes, starts, order, sorted }
+        Self {
+            radius_squared: radius * radius,
+            axes,
+            starts,
+            order,
+            sorted,
+        }
     }
 
     /// Calls `visit(j, x - x_j, distance²)` for every point `j` within the radius of `x`, always in the same order. On
@@ -149,9 +164,9 @@ impl<const D: usize> PointGrid<D> {
         let last = &near[D - 1].0[..near[D - 1].1];
         let mut pick = [0; D];
         loop {
-            let row = (0..D - 1)
-                .fold(0, |cell, a| cell * self.axes[a].count as usize + near[a].0[pick[a]])
-                * self.axes[D - 1].count as usize;
+            let row = (0..D - 1).fold(0, |cell, a| {
+                cell * self.axes[a].count as usize + near[a].0[pick[a]]
+            }) * self.axes[D - 1].count as usize;
             let mut k = 0;
             while k < last.len() {
                 let first = last[k];
@@ -196,9 +211,13 @@ impl Axis {
         // the origin, never puts a pair in reach two cells apart.
         let inverse_edge = 1.0 / (1.001 * radius);
         match periodic {
-            None => {
-                Self { origin: 0.0, inverse_edge, count: 1, period: 0.0, inverse_period: 0.0 }
-            }
+            None => Self {
+                origin: 0.0,
+                inverse_edge,
+                count: 1,
+                period: 0.0,
+                inverse_period: 0.0,
+            },
             Some([low, high]) => {
                 let mut axis = Self {
                     origin: low,
@@ -259,10 +278,17 @@ fn lay_axes<const D: usize>(
     }
     let budget = position.len().clamp(64, 1 << 30) as f64;
     while axes.iter().map(|axis| axis.count as f64).product::<f64>() > budget {
-        let widest = axes.iter_mut().max_by_key(|axis| axis.count).expect("D is positive");
+        let widest = axes
+            .iter_mut()
+            .max_by_key(|axis| axis.count)
+            .expect("D is positive");
         // An odd number of cells, lest a lattice of points folds onto few of them.
         let half = widest.count / 2;
-        widest.resize(if widest.period == 0.0 && half > 2 { (half - 1) | 1 } else { half });
+        widest.resize(if widest.period == 0.0 && half > 2 {
+            (half - 1) | 1
+        } else {
+            half
+        });
     }
     axes
 }

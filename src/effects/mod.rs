@@ -1,0 +1,60 @@
+//! Effects: one file each, with its parameters, its pair term, what it needs and what it limits.
+//!
+//! A pair term adds to the sums of a sweep. Terms are combined statically, so that a scene without an effect runs code
+//! that does not know it.
+
+mod artificial_viscosity;
+mod continuity;
+mod density_diffusion;
+mod laminar_viscosity;
+mod pressure;
+
+pub use artificial_viscosity::ArtificialViscosity;
+pub use continuity::Continuity;
+pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni};
+pub use laminar_viscosity::LaminarViscosity;
+pub use pressure::Pressure;
+
+use crate::kernel::ChosenKernel;
+use crate::simd::{Lanes, Real};
+use crate::sweep::{Other, Pair, Splat, Sums};
+
+/// A term of a pair sum. `add` must be `#[inline(always)]`.
+pub trait PairTerm<R: Real, const D: usize>: Copy + Send + Sync {
+    /// Adds what a vector of neighbours gives.
+    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        pair: &Pair<L, K, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        sums: &mut Sums<L, D>,
+    );
+}
+
+/// An effect that the scene does not call for.
+impl<R: Real, const D: usize> PairTerm<R, D> for () {
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        _: &Pair<L, K, D>,
+        _: &Splat<L, D>,
+        _: &Other<L, D>,
+        _: &mut Sums<L, D>,
+    ) {
+    }
+}
+
+/// Two effects together.
+impl<R: Real, A: PairTerm<R, D>, B: PairTerm<R, D>, const D: usize> PairTerm<R, D> for (A, B) {
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        pair: &Pair<L, K, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        sums: &mut Sums<L, D>,
+    ) {
+        self.0.add(pair, own, other, sums);
+        self.1.add(pair, own, other, sums);
+    }
+}

@@ -1,0 +1,27 @@
+//! Pressure.
+
+use super::PairTerm;
+use crate::kernel::ChosenKernel;
+use crate::simd::{Lanes, Real};
+use crate::sweep::{Other, Pair, Splat, Sums};
+
+/// Force density of the pressure, `-Σ V_j (p_i + p_j) ∇W_ij`: the form that is variationally consistent with the
+/// continuity equation of [`super::Continuity`] (Bonet & Lok 1999), antisymmetric for every pair.
+#[derive(Clone, Copy, Debug)]
+pub struct Pressure;
+
+impl<R: Real, const D: usize> PairTerm<R, D> for Pressure {
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        pair: &Pair<L, K, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        sums: &mut Sums<L, D>,
+    ) {
+        let push = -(other.volume() * (own.pressure() + other.pressure()) * pair.slope);
+        for a in 0..D {
+            sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
+        }
+    }
+}

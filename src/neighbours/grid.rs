@@ -1,0 +1,271 @@
+//! The grid of cells: a torus, so that it needs no domain.
+//!
+//! A cell coordinate is taken modulo the number of cells. Particles in reach of each other have cell coordinates that
+//! differ by at most one, and the modulus keeps that so: whatever happens, the 3^D cells around a particle's cell hold
+//! all its neighbours. A particle that leaves the box in which the grid was laid wraps around to some other cell,
+//! where the distance test rejects it: it costs nothing and breaks nothing. On a periodic axis the same wrap, with the
+//! period added, gives the images.
+
+use std::ops::Range;
+
+/// Cells of a block of space, repeated over all of it.
+#[derive(Clone, Debug)]
+pub struct Grid<const D: usize> {
+    low: [f64; D],
+    edge: [f64; D],
+    inverse_edge: [f64; D],
+    cells: [usize; D],
+    periodic: [bool; D],
+}
+
+/// A contiguous run of cells and the shift that brings its particles next to the cell that asked.
+#[derive(Clone, Copy, Debug)]
+pub struct Run<const D: usize> {
+    /// First cell.
+    pub first: usize,
+    /// One past the last cell.
+    pub end: usize,
+    /// To be added to the positions, in m.
+    pub shift: [f64; D],
+}
+
+/// The runs of cells around a cell.
+pub struct Runs<const D: usize> {
+    runs: [Run<D>; 27],
+    count: usize,
+}
+
+impl<const D: usize> std::ops::Deref for Runs<D> {
+    type Target = [Run<D>];
+    #[inline(always)]
+    fn deref(&self) -> &[Run<D>] {
+        &self.runs[..self.count]
+    }
+}
+
+impl<const D: usize> Grid<D> {
+    /// Bins per cell: its 2^D parts, which order the particles inside.
+    pub const PARTS: usize = 1 << D;
+
+    /// Lays cells of at least `reach` over the box from `low` to `high`; an axis with a period in `periodic` is covered
+    /// exactly. No more than `budget` cells: beyond, far parts of the box share cells.
+    pub fn new(
+        low: [f64; D],
+        high: [f64; D],
+        reach: f64,
+        periodic: [Option<[f64; 2]>; D],
+        budget: usize,
+    ) -> Self {
+        let mut grid = Grid {
+            low,
+            edge: [reach; D],
+            inverse_edge: [1.0 / reach; D],
+            cells: [3; D],
+            periodic: [false; D],
+        };
+        for a in 0..D {
+            if let Some([from, to]) = periodic[a] {
+                grid.low[a] = from;
+                grid.periodic[a] = true;
+                grid.cells[a] = (((to - from) / reach).floor() as usize).clamp(1, 1 << 20);
+                grid.edge[a] = (to - from) / grid.cells[a] as f64;
+                grid.inverse_edge[a] = 1.0 / grid.edge[a];
+            } else {
+                grid.cells[a] =
+                    (((high[a] - low[a]) / reach).floor() as usize + 1).clamp(3, 1 << 20);
+            }
+        }
+        while grid.count() > budget.max(27) {
+            let widest = (0..D)
+                .filter(|&a| !grid.periodic[a])
+                .max_by_key(|&a| grid.cells[a]);
+            match widest {
+                Some(a) if grid.cells[a] > 3 => grid.cells[a] = (grid.cells[a] / 2).max(3),
+                _ => break,
+            }
+        }
+        // A long period in a nearly empty domain: wider cells on that axis.
+        while grid.count() > 4 * budget.max(27) {
+            let Some(a) = (0..D)
+                .filter(|&a| grid.cells[a] > 1)
+                .max_by_key(|&a| grid.cells[a])
+            else {
+                break;
+            };
+            let period = grid.edge[a] * grid.cells[a] as f64;
+            grid.cells[a] = (grid.cells[a] / 2).max(1);
+            grid.edge[a] = period / grid.cells[a] as f64;
+            grid.inverse_edge[a] = 1.0 / grid.edge[a];
+        }
+        grid
+    }
+
+    /// Number of cells.
+    pub fn count(&self) -> usize {
+        self.cells.iter().fold(1usize, |n, &c| n.saturating_mul(c))
+    }
+
+    /// Edge of a cell in m, the largest extent of a group of particles that shares one frame.
+    pub fn edge(&self) -> [f64; D] {
+        self.edge
+    }
+
+    /// The bin of a position: its cell, and its part of the cell.
+    #[inline(always)]
+    pub fn bin(&self, x: &[f64; D]) -> u32 {
+        let mut cell = 0usize;
+        let mut part = 0usize;
+        for a in (0..D).rev() {
+            let t = (x[a] - self.low[a]) * self.inverse_edge[a];
+            let floor = t.floor();
+            part = 2 * part + (t - floor >= 0.5) as usize;
+            // A float to integer cast saturates and sends NaN to 0: no position can leave the table.
+            let c = floor as i64;
+            let n = self.cells[a] as i64;
+            let c = if c >= 0 && c < n { c } else { c.rem_euclid(n) };
+            cell = cell * self.cells[a] + c as usize;
+        }
+        (cell * Self::PARTS + part) as u32
+    }
+
+    /// Brings a position back into the period.
+    #[inline(always)]
+    pub fn wrap(&self, x: &mut [f64; D]) {
+        for a in 0..D {
+            if self.periodic[a] {
+                let period = self.edge[a] * self.cells[a] as f64;
+                let turns = ((x[a] - self.low[a]) / period).floor();
+                if turns != 0.0 {
+                    x[a] -= turns * period;
+                }
+            }
+        }
+    }
+
+    /// Whether any axis is periodic.
+    pub fn is_periodic(&self) -> bool {
+        self.periodic.contains(&true)
+    }
+
+    /// Shortest vector from `b` to `a` over periodic images.
+    #[inline]
+    pub fn separation(&self, a: &[f64; D], b: &[f64; D]) -> [f64; D] {
+        std::array::from_fn(|k| {
+            let d = a[k] - b[k];
+            if self.periodic[k] {
+                let period = self.edge[k] * self.cells[k] as f64;
+                d - (d / period).round() * period
+            } else {
+                d
+            }
+        })
+    }
+
+    /// The runs of cells that cover the 3^D cells around `cell`, in ascending order of offset.
+    #[inline]
+    pub fn around(&self, cell: usize) -> Runs<D> {
+        let mut at = [0usize; D];
+        let mut rest = cell;
+        for a in 0..D {
+            at[a] = rest % self.cells[a];
+            rest /= self.cells[a];
+        }
+        let mut runs = Runs {
+            runs: [Run {
+                first: 0,
+                end: 0,
+                shift: [0.0; D],
+            }; 27],
+            count: 0,
+        };
+        for row in 0..3usize.pow(D as u32 - 1) {
+            let mut shift = [0.0; D];
+            let mut base = 0usize;
+            let mut digits = row;
+            let mut stride = self.cells[0];
+            for a in 1..D {
+                let (c, s) = self.neighbour(a, at[a], digits % 3);
+                digits /= 3;
+                base += c * stride;
+                stride *= self.cells[a];
+                shift[a] = s;
+            }
+            let (n, x) = (self.cells[0], at[0]);
+            let mut add = |first: usize, end: usize, s: f64| {
+                shift[0] = s;
+                runs.runs[runs.count] = Run {
+                    first: base + first,
+                    end: base + end,
+                    shift,
+                };
+                runs.count += 1;
+            };
+            if x > 0 && x + 1 < n {
+                add(x - 1, x + 2, 0.0);
+            } else {
+                let (left, left_shift) = self.neighbour(0, x, 0);
+                let (right, right_shift) = self.neighbour(0, x, 2);
+                add(left, left + 1, left_shift);
+                add(x, x + 1, 0.0);
+                add(right, right + 1, right_shift);
+            }
+        }
+        runs
+    }
+
+    /// The cell at `at + step - 1` on axis `a`, and the shift of its particles.
+    #[inline(always)]
+    fn neighbour(&self, a: usize, at: usize, step: usize) -> (usize, f64) {
+        let n = self.cells[a];
+        let period = if self.periodic[a] {
+            self.edge[a] * n as f64
+        } else {
+            0.0
+        };
+        match (at + step).checked_sub(1) {
+            None => (n - 1, -period),
+            Some(c) if c >= n => (0, period),
+            Some(c) => (c, 0.0),
+        }
+    }
+}
+
+/// Where the particles of each bin are, once a set is sorted.
+#[derive(Clone, Debug, Default)]
+pub struct Cells {
+    /// Index of the first particle of each bin, and at the end the number of particles.
+    pub(crate) offsets: Vec<u32>,
+    parts: usize,
+}
+
+impl Cells {
+    /// No particles in `cells` cells of `parts` bins.
+    pub fn new(cells: usize, parts: usize) -> Self {
+        Cells {
+            offsets: vec![0; cells * parts + 1],
+            parts,
+        }
+    }
+
+    /// Number of cells.
+    pub fn count(&self) -> usize {
+        (self.offsets.len() - 1) / self.parts.max(1)
+    }
+
+    /// The particles of the cells `first..end`.
+    #[inline(always)]
+    pub fn particles(&self, first: usize, end: usize) -> Range<usize> {
+        self.offsets[first * self.parts] as usize..self.offsets[end * self.parts] as usize
+    }
+
+    /// The first cell that starts at or after particle `index`.
+    pub fn cell_from(&self, index: usize) -> usize {
+        let bin = self.offsets.partition_point(|&o| (o as usize) < index);
+        bin.div_ceil(self.parts).min(self.count())
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.offsets.capacity() * 4
+    }
+}

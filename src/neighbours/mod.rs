@@ -1,0 +1,9 @@
+//! Who is near whom: the grid of cells that the sweeps walk, and stand-alone neighbour searches.
+
+pub mod brute;
+mod grid;
+pub mod search;
+mod sort;
+
+pub use grid::{Cells, Grid, Run, Runs};
+pub use sort::Sorter;

@@ -1,0 +1,110 @@
+//! The particles of walls.
+
+use super::{Column, Given, component, permute, rounded, vector_columns};
+use crate::neighbours::{Cells, Grid, Sorter};
+use crate::simd::Real;
+
+/// All walls of a scene. Their particles are at rest, so they are sorted once.
+pub struct Wall<R, const D: usize> {
+    /// Position in m.
+    pub position: [Column<f64>; D],
+    /// Mass in kg of the fluid that a wall particle stands for.
+    pub mass: Column<R>,
+    /// The order in which the particles were given.
+    pub id: Column<u32>,
+    /// Velocity of the wall itself in m/s.
+    pub pair_velocity: [Column<R>; D],
+    /// Velocity that viscosity sees: mirrored at a no-slip wall.
+    pub slip_velocity: Option<[Column<R>; D]>,
+    /// Volume.
+    pub volume: Column<R>,
+    /// Pressure in Pa.
+    pub pressure: Column<R>,
+    /// `ρ/ρ0 - 1`.
+    pub condensation: Column<R>,
+    /// Density and its rate, where walls follow the equation of continuity.
+    pub density: Option<(Column<f64>, Column<R>)>,
+    /// Particles by cell.
+    pub cells: Cells,
+}
+
+impl<R: Real, const D: usize> Wall<R, D> {
+    /// Takes over and sorts the particles given.
+    pub fn new(given: &Given, grid: &Grid<D>, no_slip: bool, dynamic: bool) -> Self {
+        let n = given.mass.len();
+        let mut wall = Wall {
+            position: std::array::from_fn(|a| component::<D>(&given.position, a)),
+            mass: rounded(&given.mass),
+            id: Column::from_values(0..n as u32),
+            pair_velocity: std::array::from_fn(|a| {
+                Column::from_values(
+                    given
+                        .velocity
+                        .iter()
+                        .skip(a)
+                        .step_by(D)
+                        .map(|&v| R::from_f64(v)),
+                )
+            }),
+            slip_velocity: no_slip.then(|| vector_columns(n)),
+            volume: Column::new(n),
+            pressure: Column::new(n),
+            condensation: Column::new(n),
+            density: dynamic.then(|| {
+                (
+                    Column::from_values(given.density.iter().copied()),
+                    Column::new(n),
+                )
+            }),
+            cells: Cells::new(grid.count(), Grid::<D>::PARTS),
+        };
+        wall.sort(grid);
+        wall
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.id.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.id.is_empty()
+    }
+
+    fn sort(&mut self, grid: &Grid<D>) {
+        let mut sorter = Sorter::new(self.len());
+        let position = &self.position;
+        sorter.sort(&mut self.cells, |i| {
+            let mut x = std::array::from_fn(|a| position[a][i]);
+            grid.wrap(&mut x);
+            grid.bin(&x)
+        });
+        let order = &sorter.order;
+        let mut doubles = Column::new(self.len());
+        let mut reals = Column::new(self.len());
+        for a in 0..D {
+            permute(&mut self.position[a], order, &mut doubles);
+            permute(&mut self.pair_velocity[a], order, &mut reals);
+        }
+        permute(&mut self.mass, order, &mut reals);
+        if let Some((density, _)) = &mut self.density {
+            permute(density, order, &mut doubles);
+        }
+        permute(&mut self.id, order, &mut Column::new(order.len()));
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        D * (self.position[0].bytes() + self.pair_velocity[0].bytes())
+            + self.mass.bytes()
+            + self.id.bytes()
+            + 3 * self.volume.bytes()
+            + self.slip_velocity.as_ref().map_or(0, |s| D * s[0].bytes())
+            + self
+                .density
+                .as_ref()
+                .map_or(0, |(d, r)| d.bytes() + r.bytes())
+            + self.cells.bytes()
+    }
+}

@@ -1,0 +1,294 @@
+//! From a configuration to the passes of a step: the one place that knows which effects there are.
+
+use super::config::{Config, DiffusionForm, EosName};
+use super::solver::Solver;
+use super::timers::Phase;
+use crate::effects::{
+    Antuono, ArtificialViscosity, Continuity, DensityGradient, Fourtakas, LaminarViscosity,
+    Molteni, PairTerm,
+};
+use crate::eos::{AnyEos, Linear, Tait};
+use crate::kernel::{Fixed, KernelName, WendlandC2};
+use crate::neighbours::{Cells, Grid};
+use crate::particles::Column;
+use crate::simd::Real;
+use crate::step::{DensityRate, Forces, GradientTerm};
+use crate::sweep::{Output, Pass, Source, Sweep, Sweeper, slot};
+use crate::walls::{Extrapolation, Slip, WallMethod};
+
+/// Whether the configuration calls for the renormalised gradient of density.
+pub(super) fn needs_gradient(config: &Config) -> bool {
+    config
+        .density_diffusion
+        .is_some_and(|d| d.form == DiffusionForm::Antuono)
+}
+
+/// The equation of state asked for.
+pub(super) fn equation_of_state(config: &Config) -> AnyEos {
+    match config.eos {
+        EosName::Tait => AnyEos::Tait(Tait {
+            reference_density: config.reference_density,
+            sound_speed: config.sound_speed,
+            gamma: config.gamma,
+            background: config.background_pressure,
+        }),
+        EosName::Linear => AnyEos::Linear(Linear {
+            reference_density: config.reference_density,
+            sound_speed: config.sound_speed,
+            background: config.background_pressure,
+        }),
+    }
+}
+
+/// Columns to be written, the rest empty.
+fn outputs<'a, R: Real>(
+    columns: impl IntoIterator<Item = (usize, &'a mut Column<R>)>,
+) -> Output<'a, R> {
+    let mut out: Output<R> = std::array::from_fn(|_| Default::default());
+    for (k, column) in columns {
+        out[k] = &mut column[..];
+    }
+    out
+}
+
+/// What a sweep works with.
+struct Stage<'a, R, const D: usize> {
+    grid: &'a Grid<D>,
+    sweeper: &'a Sweeper<R>,
+    target: &'a Source<'a, R, D>,
+    fluid: Option<&'a Source<'a, R, D>>,
+    wall: Option<&'a Source<'a, R, D>>,
+}
+
+impl<R: Real, const D: usize> Stage<'_, R, D> {
+    fn run<P: Pass<R, D>>(&self, kernel: KernelName, pass: &P, out: Output<R>) {
+        let sweep = Sweep {
+            grid: self.grid,
+            target: self.target,
+            fluid: self.fluid,
+            wall: self.wall,
+            pass,
+        };
+        match kernel {
+            KernelName::WendlandC2 => self
+                .sweeper
+                .run(Fixed::<WendlandC2>::default(), &sweep, out),
+            other => self.sweeper.run(other, &sweep, out),
+        }
+    }
+}
+
+/// Fields of the fluid that the sweep of forces reads.
+fn force_source<'a, R: Real, const D: usize>(
+    position: &'a [Column<f64>; D],
+    cells: &'a Cells,
+    volume: &'a Column<R>,
+    pressure: &'a Column<R>,
+    condensation: &'a Column<R>,
+    velocity: &'a [Column<R>; D],
+) -> Source<'a, R, D> {
+    Source::new(position, cells)
+        .with(slot::VOLUME, volume)
+        .with(slot::PRESSURE, pressure)
+        .with(slot::CONDENSATION, condensation)
+        .with_vector(slot::VELOCITY, velocity)
+}
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// Wall values from the fluid as it is before the sweep of forces.
+    pub(super) fn update_walls(&mut self) {
+        let (Some(wall), Some(config)) = (&mut self.wall, self.config.wall) else {
+            return;
+        };
+        match config.method {
+            WallMethod::Adami => {
+                let fluid = &self.fluid;
+                let source = force_source(
+                    &fluid.position,
+                    &fluid.cells,
+                    &fluid.volume,
+                    &fluid.pressure,
+                    &fluid.condensation,
+                    &fluid.pair_velocity,
+                );
+                let target = Source::new(&wall.position, &wall.cells)
+                    .with(slot::VOLUME, &wall.mass)
+                    .with_vector(slot::VELOCITY, &wall.pair_velocity);
+                let pass = Extrapolation {
+                    gravity: self.motion.gravity,
+                    eos: self.motion.eos,
+                    suction: config.suction.unwrap_or(self.grid.is_periodic()),
+                    no_slip: config.slip == Slip::No,
+                };
+                let columns = [&mut wall.pressure, &mut wall.condensation, &mut wall.volume];
+                let slip = wall
+                    .slip_velocity
+                    .iter_mut()
+                    .flatten()
+                    .enumerate()
+                    .map(|(a, c)| (3 + a, c));
+                let out = outputs(columns.into_iter().enumerate().chain(slip));
+                let stage = Stage {
+                    grid: &self.grid,
+                    sweeper: &self.sweeper,
+                    target: &target,
+                    fluid: Some(&source),
+                    wall: None,
+                };
+                stage.run(self.kernel, &pass, out);
+            }
+            WallMethod::Dynamic => wall.follow_density(&self.motion.eos),
+        }
+        self.timers.book(Phase::Walls);
+    }
+
+    /// The sweep of forces.
+    pub(super) fn sum_forces(&mut self) {
+        let c = &self.config;
+        let (h, rho) = (c.smoothing_length, c.reference_density);
+        let artificial = c
+            .artificial_viscosity
+            .map(|v| ArtificialViscosity::new(v.alpha, v.beta, c.sound_speed, h, rho));
+        let laminar = c
+            .laminar_viscosity
+            .map(|v| LaminarViscosity::new(v.kinematic, h, rho));
+        match (artificial, laminar, self.fluid.gradient.is_some()) {
+            (None, None, false) => self.run_forces((), ()),
+            (None, None, true) => self.run_forces((), DensityGradient),
+            (Some(a), None, false) => self.run_forces(a, ()),
+            (Some(a), None, true) => self.run_forces(a, DensityGradient),
+            (None, Some(l), false) => self.run_forces(l, ()),
+            (None, Some(l), true) => self.run_forces(l, DensityGradient),
+            (Some(a), Some(l), false) => self.run_forces((a, l), ()),
+            (Some(a), Some(l), true) => self.run_forces((a, l), DensityGradient),
+        }
+        self.timers.book(Phase::Forces);
+    }
+
+    fn run_forces<V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm>(
+        &mut self,
+        viscosity: V,
+        gradient: G,
+    ) {
+        let pass = Forces {
+            viscosity,
+            gradient,
+            no_slip: self.config.wall.is_some_and(|w| w.slip == Slip::No),
+            specific_volume: 1.0 / self.config.reference_density,
+        };
+        let fluid = &mut self.fluid;
+        let source = force_source(
+            &fluid.position,
+            &fluid.cells,
+            &fluid.volume,
+            &fluid.pressure,
+            &fluid.condensation,
+            &fluid.pair_velocity,
+        );
+        let wall = self.wall.as_ref().map(|w| {
+            let velocity = w.slip_velocity.as_ref().unwrap_or(&w.pair_velocity);
+            force_source(
+                &w.position,
+                &w.cells,
+                &w.volume,
+                &w.pressure,
+                &w.condensation,
+                velocity,
+            )
+        });
+        let gradient = fluid
+            .gradient
+            .iter_mut()
+            .flatten()
+            .enumerate()
+            .map(|(a, c)| (3 + a, c));
+        let out = outputs(fluid.acceleration.iter_mut().enumerate().chain(gradient));
+        let stage = Stage {
+            grid: &self.grid,
+            sweeper: &self.sweeper,
+            target: &source,
+            fluid: Some(&source),
+            wall: wall.as_ref(),
+        };
+        stage.run(self.kernel, &pass, out);
+    }
+
+    /// The sweep of continuity.
+    pub(super) fn sum_density_rates(&mut self) {
+        let c = &self.config;
+        let (h, c0) = (c.smoothing_length, c.sound_speed);
+        match c.density_diffusion.map(|d| (d.form, d.delta)) {
+            None => self.run_density_rates(()),
+            Some((DiffusionForm::Molteni, delta)) => {
+                self.run_density_rates(Molteni::new(delta, h, c0))
+            }
+            Some((DiffusionForm::Antuono, delta)) => {
+                self.run_density_rates(Antuono::new(delta, h, c0))
+            }
+            Some((DiffusionForm::Fourtakas, delta)) => {
+                self.run_density_rates(Fourtakas::<D>::new(delta, h, c0, c.gamma, c.gravity()));
+            }
+        }
+        self.timers.book(Phase::Continuity);
+    }
+
+    fn run_density_rates<T: PairTerm<R, D>>(&mut self, diffusion: T) {
+        let reference_density = self.config.reference_density;
+        let pass = DensityRate {
+            continuity: Continuity,
+            diffusion,
+            reference_density,
+        };
+        let fluid = &mut self.fluid;
+        let mut source = Source::new(&fluid.position, &fluid.cells)
+            .with(slot::VOLUME, &fluid.volume)
+            .with(slot::CONDENSATION, &fluid.condensation)
+            .with_vector(slot::VELOCITY, &fluid.pair_velocity);
+        if let Some(gradient) = &fluid.gradient {
+            source = source.with_vector(slot::GRADIENT, gradient);
+        }
+        let wall = self.wall.as_ref().map(|w| {
+            Source::new(&w.position, &w.cells)
+                .with(slot::VOLUME, &w.volume)
+                .with(slot::CONDENSATION, &w.condensation)
+                .with_vector(slot::VELOCITY, &w.pair_velocity)
+        });
+        let stage = Stage {
+            grid: &self.grid,
+            sweeper: &self.sweeper,
+            target: &source,
+            fluid: Some(&source),
+            wall: wall.as_ref(),
+        };
+        stage.run(self.kernel, &pass, outputs([(0, &mut fluid.density_rate)]));
+        // Walls that follow the equation of continuity: the same sum, over the fluid.
+        if let Some(w) = &mut self.wall
+            && let Some((_, rate)) = &mut w.density
+        {
+            let target = Source::new(&w.position, &w.cells)
+                .with(slot::VOLUME, &w.volume)
+                .with(slot::CONDENSATION, &w.condensation)
+                .with_vector(slot::VELOCITY, &w.pair_velocity);
+            let pass = DensityRate {
+                continuity: Continuity,
+                diffusion: (),
+                reference_density,
+            };
+            let stage = Stage {
+                grid: &self.grid,
+                sweeper: &self.sweeper,
+                target: &target,
+                fluid: Some(&source),
+                wall: None,
+            };
+            stage.run(self.kernel, &pass, outputs([(0, rate)]));
+        }
+    }
+
+    /// Density of walls that follow the equation of continuity.
+    pub(super) fn advance_walls(&mut self, dt: f64) {
+        if let Some(wall) = &mut self.wall {
+            wall.advance_density(dt, self.config.reference_density);
+        }
+    }
+}

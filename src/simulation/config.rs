@@ -1,0 +1,244 @@
+//! What a simulation is told, all numbers resolved.
+
+use crate::error::{Error, Result};
+use crate::kernel::KernelName;
+use crate::walls::{Slip, WallMethod};
+use serde::{Deserialize, Serialize};
+
+/// The resolved description of a simulation; the particles come beside it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Config {
+    /// 2 or 3.
+    pub dimension: usize,
+    /// Initial particle spacing in m.
+    pub spacing: f64,
+    /// Smoothing length in m.
+    pub smoothing_length: f64,
+    /// Smoothing kernel.
+    #[serde(default)]
+    pub kernel: KernelName,
+    /// Gravity in m/s²; absent: none.
+    #[serde(default)]
+    pub gravity: Option<Vec<f64>>,
+    /// Per axis `[low, high]` in m where it is periodic.
+    #[serde(default)]
+    pub periodic: Vec<Option<[f64; 2]>>,
+    /// Density at rest in kg/m³.
+    pub reference_density: f64,
+    /// Speed of sound at rest in m/s.
+    pub sound_speed: f64,
+    /// Equation of state.
+    #[serde(default)]
+    pub eos: EosName,
+    /// Exponent of Tait's equation.
+    #[serde(default = "seven")]
+    pub gamma: f64,
+    /// Pressure at rest in Pa.
+    #[serde(default)]
+    pub background_pressure: f64,
+    /// Monaghan's artificial viscosity.
+    #[serde(default)]
+    pub artificial_viscosity: Option<ArtificialViscosityConfig>,
+    /// Laminar viscosity.
+    #[serde(default)]
+    pub laminar_viscosity: Option<LaminarViscosityConfig>,
+    /// Density diffusion.
+    #[serde(default)]
+    pub density_diffusion: Option<DensityDiffusionConfig>,
+    /// Particle shifting.
+    #[serde(default)]
+    pub shifting: Option<ShiftingConfig>,
+    /// Walls.
+    #[serde(default)]
+    pub wall: Option<WallConfig>,
+    /// Courant number; absent: the integrator's own.
+    #[serde(default)]
+    pub courant: Option<f64>,
+    /// Fixed time step in s.
+    #[serde(default)]
+    pub time_step: Option<f64>,
+}
+
+fn seven() -> f64 {
+    7.0
+}
+
+/// Equations of state by name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EosName {
+    /// Tait's.
+    #[default]
+    Tait,
+    /// Linear.
+    Linear,
+}
+
+/// Coefficients of the artificial viscosity.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ArtificialViscosityConfig {
+    /// Linear coefficient.
+    pub alpha: f64,
+    /// Quadratic coefficient.
+    #[serde(default)]
+    pub beta: f64,
+}
+
+/// A Newtonian fluid.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct LaminarViscosityConfig {
+    /// Kinematic viscosity in m²/s.
+    pub kinematic: f64,
+}
+
+/// Density diffusion.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct DensityDiffusionConfig {
+    /// Its form.
+    pub form: DiffusionForm,
+    /// Its coefficient δ.
+    pub delta: f64,
+}
+
+/// Forms of density diffusion.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum DiffusionForm {
+    /// Molteni & Colagrossi 2009.
+    Molteni,
+    /// Antuono et al. 2010.
+    Antuono,
+    /// Fourtakas et al. 2019.
+    Fourtakas,
+}
+
+/// Particle shifting.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct ShiftingConfig {
+    /// Its form.
+    pub form: ShiftingForm,
+    /// Whether there is a free surface to keep.
+    #[serde(default = "yes")]
+    pub free_surface: bool,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// Forms of particle shifting.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ShiftingForm {
+    /// Sun et al. 2017.
+    Sun,
+    /// Lind et al. 2012.
+    Lind,
+}
+
+/// Walls.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct WallConfig {
+    /// Boundary method.
+    pub method: WallMethod,
+    /// Slip or no slip.
+    pub slip: Slip,
+    /// Whether the wall may pull at the fluid; absent: only where some axis is periodic (no free surface).
+    #[serde(default)]
+    pub suction: Option<bool>,
+}
+
+impl Config {
+    /// Checks all numbers; the message names the key, what was found and what is allowed.
+    pub fn validate(&self) -> Result<()> {
+        let positive = |key: &str, value: f64| {
+            if value > 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(Error::Input(format!(
+                    "{key}: found {value}, allowed is a finite number above 0"
+                )))
+            }
+        };
+        let not_negative = |key: &str, value: f64| {
+            if value >= 0.0 && value.is_finite() {
+                Ok(())
+            } else {
+                Err(Error::Input(format!(
+                    "{key}: found {value}, allowed is a finite number of at least 0"
+                )))
+            }
+        };
+        if !matches!(self.dimension, 2 | 3) {
+            return Err(Error::Input(format!(
+                "dimension: found {}, allowed are 2 and 3",
+                self.dimension
+            )));
+        }
+        positive("spacing", self.spacing)?;
+        positive("smoothing_length", self.smoothing_length)?;
+        positive("reference_density", self.reference_density)?;
+        positive("sound_speed", self.sound_speed)?;
+        positive("gamma", self.gamma)?;
+        not_negative("background_pressure", self.background_pressure)?;
+        if let Some(v) = self.artificial_viscosity {
+            not_negative("artificial_viscosity.alpha", v.alpha)?;
+            not_negative("artificial_viscosity.beta", v.beta)?;
+        }
+        if let Some(v) = self.laminar_viscosity {
+            not_negative("laminar_viscosity.kinematic", v.kinematic)?;
+        }
+        if let Some(d) = self.density_diffusion {
+            not_negative("density_diffusion.delta", d.delta)?;
+        }
+        if let Some(c) = self.courant {
+            positive("courant", c)?;
+        }
+        if let Some(dt) = self.time_step {
+            positive("time_step", dt)?;
+        }
+        if let Some(g) = &self.gravity
+            && (g.len() != self.dimension || g.iter().any(|g| !g.is_finite()))
+        {
+            return Err(Error::Input(format!(
+                "gravity: found {g:?}, allowed are {} finite numbers",
+                self.dimension
+            )));
+        }
+        if !self.periodic.is_empty() && self.periodic.len() != self.dimension {
+            return Err(Error::Input(format!(
+                "periodic: found {} axes, allowed are {}",
+                self.periodic.len(),
+                self.dimension
+            )));
+        }
+        let support = self.smoothing_length * self.kernel.support();
+        for (axis, period) in self.periodic.iter().enumerate() {
+            if let Some([low, high]) = period
+                && !(low.is_finite() && high.is_finite() && high - low >= support)
+            {
+                return Err(Error::Input(format!(
+                    "periodic[{axis}]: found [{low}, {high}], allowed is a length of at least the support radius \
+                     {support}; choose a smaller spacing or a longer period"
+                )));
+            }
+        }
+        Ok(())
+    }
+
+    /// Gravity, zero where absent.
+    pub fn gravity<const D: usize>(&self) -> [f64; D] {
+        std::array::from_fn(|a| self.gravity.as_ref().map_or(0.0, |g| g[a]))
+    }
+
+    /// The period of each axis.
+    pub fn period<const D: usize>(&self) -> [Option<[f64; 2]>; D] {
+        std::array::from_fn(|a| self.periodic.get(a).copied().flatten())
+    }
+}

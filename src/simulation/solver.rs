@@ -1,0 +1,307 @@
+//! The loop: one step is a screen.
+
+use super::config::Config;
+use super::timers::{Phase, Timers};
+use crate::error::{Error, Instability, Result};
+use crate::kernel::KernelName;
+use crate::neighbours::Grid;
+use crate::particles::{Fluid, Given, Wall};
+use crate::simd::Real;
+use crate::step::{Limit, Limits, Motion, State};
+use crate::sweep::Sweeper;
+use crate::walls::{Slip, WallMethod};
+use std::time::{Duration, Instant};
+
+/// Cells are wider than the support radius by this share, so that the order lasts for some steps.
+const SKIN: f64 = 0.1;
+/// Largest stable Courant number of the symplectic step, times a margin.
+const COURANT: f64 = 0.5;
+
+/// A named range of particles as they were given.
+#[derive(Clone, Debug)]
+pub struct Body {
+    /// Its name.
+    pub name: String,
+    /// Whether it is fluid; else wall.
+    pub fluid: bool,
+    /// Ids within its set.
+    pub ids: std::ops::Range<u32>,
+}
+
+/// A simulation in `D` dimensions with pairs in `R`.
+pub struct Solver<R, const D: usize> {
+    pub(super) config: Config,
+    pub(super) bodies: Vec<Body>,
+    pub(super) grid: Grid<D>,
+    pub(super) fluid: Fluid<R, D>,
+    pub(super) wall: Option<Wall<R, D>>,
+    pub(super) motion: Motion<D>,
+    pub(super) sweeper: Sweeper<R>,
+    pub(super) limits: Limits,
+    pub(super) kernel: KernelName,
+    pub(super) time: f64,
+    pub(super) step: u64,
+    pub(super) time_step: f64,
+    pub(super) limit: Limit,
+    pub(super) steps_by_limit: [u64; Limit::ALL.len()],
+    pub(super) state: State,
+    /// Whether rates of the present state exist.
+    pub(super) primed: bool,
+    /// Upper bound of the way that any particle has gone since the last sort.
+    pub(super) travelled: f64,
+    pub(super) skin: f64,
+    pub(super) mach_max: f64,
+    pub(super) timers: Timers,
+}
+
+/// Why `advance` returned.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Progress {
+    /// The time asked for is reached.
+    Done,
+    /// The number of steps is used up.
+    Steps,
+    /// The wall time is used up.
+    Paused,
+}
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// Assembles a simulation; `fluid` and `wall` hold the bodies one after the other.
+    pub fn new(
+        config: Config,
+        bodies: Vec<Body>,
+        fluid: &Given,
+        wall: &Given,
+        threads: usize,
+    ) -> Self {
+        let h = config.smoothing_length;
+        let support = h * config.kernel.support();
+        let mut low = [f64::INFINITY; D];
+        let mut high = [f64::NEG_INFINITY; D];
+        for x in fluid
+            .position
+            .chunks_exact(D)
+            .chain(wall.position.chunks_exact(D))
+        {
+            for a in 0..D {
+                low[a] = low[a].min(x[a]);
+                high[a] = high[a].max(x[a]);
+            }
+        }
+        let n = fluid.mass.len() + wall.mass.len();
+        let grid = Grid::new(low, high, support * (1.0 + SKIN), config.period(), n);
+        let wall_config = config.wall.filter(|_| !wall.mass.is_empty());
+        let with_gradient = super::assembly::needs_gradient(&config);
+        let set_of_walls = wall_config.map(|w| {
+            Wall::new(
+                wall,
+                &grid,
+                w.slip == Slip::No,
+                w.method == WallMethod::Dynamic,
+            )
+        });
+        Solver {
+            motion: Motion {
+                gravity: config.gravity(),
+                eos: super::assembly::equation_of_state(&config),
+            },
+            sweeper: Sweeper::new(threads, h),
+            limits: Limits {
+                courant: config.courant.unwrap_or(COURANT),
+                smoothing_length: h,
+                viscosity: config.laminar_viscosity.map_or(0.0, |v| v.kinematic),
+                fixed: config.time_step,
+            },
+            kernel: config.kernel,
+            fluid: Fluid::new(fluid, &grid, with_gradient),
+            wall: set_of_walls,
+            grid,
+            bodies,
+            config,
+            time: 0.0,
+            step: 0,
+            time_step: 0.0,
+            limit: Limit::default(),
+            steps_by_limit: Default::default(),
+            state: State::EMPTY,
+            primed: false,
+            travelled: 0.0,
+            skin: SKIN * support,
+            mach_max: 0.0,
+            timers: Timers::default(),
+        }
+    }
+
+    /// Steps until `until` exactly, or until `max_steps` or `patience` is used up.
+    pub fn advance(
+        &mut self,
+        until: f64,
+        max_steps: u64,
+        patience: Duration,
+    ) -> Result<(u64, Progress)> {
+        let (started, first) = (Instant::now(), self.step);
+        if !self.primed {
+            self.prime()?;
+        }
+        while self.time < until {
+            if self.step - first >= max_steps {
+                return Ok((self.step - first, Progress::Steps));
+            }
+            if started.elapsed() >= patience {
+                return Ok((self.step - first, Progress::Paused));
+            }
+            let (dt, limit, last) = self.choose_time_step(until);
+            self.one_step(dt)?;
+            self.time = if last { until } else { self.time + dt };
+            self.time_step = dt;
+            self.limit = limit;
+            self.steps_by_limit[limit as usize] += 1;
+            self.step += 1;
+        }
+        Ok((self.step - first, Progress::Done))
+    }
+
+    /// The next time step, what limits it, and whether it ends at `until`.
+    fn choose_time_step(&self, until: f64) -> (f64, Limit, bool) {
+        let sound = self.motion.sound_speed(self.state.density_max);
+        let (dt, limit) = self
+            .limits
+            .time_step(sound, self.state.speed, self.state.acceleration);
+        let left = until - self.time;
+        if dt >= left {
+            (left, Limit::Output, true)
+        } else if 2.0 * dt > left && self.limits.fixed.is_none() {
+            // Two even steps rather than a long and a tiny one.
+            (0.5 * left, Limit::Output, false)
+        } else {
+            (dt, limit, false)
+        }
+    }
+
+    /// Rates of the state at the start, so that the first step is like all others.
+    fn prime(&mut self) -> Result<()> {
+        self.timers.start();
+        self.sort(false);
+        self.motion.first_half(&mut self.fluid, 0.0);
+        self.update_walls();
+        self.sum_forces();
+        self.motion.second_half(&mut self.fluid, 0.0);
+        self.sum_density_rates();
+        self.state = self.motion.finish(&mut self.fluid, 0.0);
+        self.check()?;
+        self.primed = true;
+        Ok(())
+    }
+
+    /// One step of `dt`: sort → drift → walls → forces → kick and drift → continuity → check.
+    fn one_step(&mut self, dt: f64) -> Result<()> {
+        self.timers.start();
+        if 2.0 * (self.travelled + 1.5 * dt * self.state.speed) > self.skin {
+            self.sort(false);
+        }
+        self.motion.first_half(&mut self.fluid, dt);
+        self.travelled += 0.5 * dt * self.state.speed;
+        self.timers.book(Phase::Integrate);
+        self.update_walls();
+        self.sum_forces();
+        let speed = self.motion.second_half(&mut self.fluid, dt);
+        self.travelled += 0.5 * dt * speed;
+        self.timers.book(Phase::Integrate);
+        if 2.0 * self.travelled > self.skin {
+            self.sort(true);
+        }
+        self.sum_density_rates();
+        self.advance_walls(dt);
+        self.state = self.motion.finish(&mut self.fluid, dt);
+        self.timers.book(Phase::Integrate);
+        self.check()?;
+        self.timers.book(Phase::Guard);
+        Ok(())
+    }
+
+    fn sort(&mut self, mid_step: bool) {
+        self.fluid.sort(&self.grid, mid_step);
+        self.travelled = 0.0;
+        self.timers.book(Phase::Sort);
+    }
+
+    /// Stops at what is not finite or not physical.
+    fn check(&mut self) -> Result<()> {
+        let reference = self.config.reference_density;
+        let mach = self.state.speed / self.config.sound_speed;
+        self.mach_max = self.mach_max.max(mach);
+        let density_ok =
+            self.state.density_min > 0.5 * reference && self.state.density_max < 1.5 * reference;
+        if (self.state.finite && density_ok) || self.fluid.is_empty() {
+            return Ok(());
+        }
+        Err(Error::Instability(Box::new(self.find_trouble())))
+    }
+
+    /// The first particle, by id, with a number that cannot be.
+    fn find_trouble(&self) -> Instability {
+        let fluid = &self.fluid;
+        let reference = self.config.reference_density;
+        let mut found: Option<(u32, usize, &'static str, f64)> = None;
+        for i in 0..fluid.len() {
+            let (x, v) = (fluid.at(i), fluid.velocity_of(i));
+            let density = fluid.density[i];
+            let bad = |values: &[f64]| values.iter().copied().find(|v| !v.is_finite());
+            let trouble = if let Some(value) = bad(&x) {
+                Some(("position", value))
+            } else if let Some(value) = bad(&v) {
+                Some(("velocity", value))
+            } else if !(density > 0.5 * reference && density < 1.5 * reference) {
+                Some(("density", density))
+            } else {
+                bad(&std::array::from_fn::<_, D, _>(|a| {
+                    fluid.acceleration[a][i].to_f64()
+                }))
+                .map(|a| ("acceleration", a))
+            };
+            if let Some((quantity, value)) = trouble
+                && found.is_none_or(|f| fluid.id[i] < f.0)
+            {
+                found = Some((fluid.id[i], i, quantity, value));
+            }
+        }
+        let (particle, i, quantity, value) = found.unwrap_or((0, 0, "state", f64::NAN));
+        let (cause, remedy) = if value.is_finite() {
+            (
+                format!(
+                    "the density left the range of a weakly compressible fluid (0.5 to 1.5 of {reference}); the \
+                     largest speed was {:.3e} m/s at a sound speed of {:.3e} m/s",
+                    self.state.speed, self.config.sound_speed
+                ),
+                "raise the sound speed, or lower the Courant number or the time step".to_owned(),
+            )
+        } else {
+            (
+                "a number that is not finite, from a time step too long for the flow or from the input".to_owned(),
+                "lower the Courant number or the time step; check the initial state".to_owned(),
+            )
+        };
+        Instability {
+            time: self.time,
+            step: self.step,
+            particle,
+            position: fluid.at(i).to_vec(),
+            quantity,
+            value,
+            cause,
+            remedy,
+        }
+    }
+}
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// Simulated time in s.
+    pub fn now(&self) -> f64 {
+        self.time
+    }
+
+    /// Time by phase.
+    pub fn timers(&self) -> &Timers {
+        &self.timers
+    }
+}

@@ -1,0 +1,75 @@
+//! The time step: the least of what the effects allow, and who set it.
+
+use serde::{Deserialize, Serialize};
+
+/// What limited a time step.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Limit {
+    /// Sound crosses a smoothing length: `C h / (c + |u|)`.
+    #[default]
+    Acoustic,
+    /// Momentum diffuses over a smoothing length: `0.125 h²/ν` (Morris, Fox & Zhu 1997).
+    Viscous,
+    /// Acceleration moves a particle: `0.25 √(h/|a|)` (Monaghan 1992).
+    Force,
+    /// The scene fixed it.
+    Fixed,
+    /// A time of output came first.
+    Output,
+}
+
+impl Limit {
+    /// All limits.
+    pub const ALL: [Limit; 5] = [
+        Limit::Acoustic,
+        Limit::Viscous,
+        Limit::Force,
+        Limit::Fixed,
+        Limit::Output,
+    ];
+
+    /// Its name in summaries.
+    pub fn name(self) -> &'static str {
+        match self {
+            Limit::Acoustic => "acoustic",
+            Limit::Viscous => "viscous",
+            Limit::Force => "force",
+            Limit::Fixed => "fixed",
+            Limit::Output => "output",
+        }
+    }
+}
+
+/// Constants of the criteria.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    /// Courant number `C` of the acoustic criterion.
+    pub courant: f64,
+    /// Smoothing length in m.
+    pub smoothing_length: f64,
+    /// Kinematic viscosity in m²/s; 0 without.
+    pub viscosity: f64,
+    /// A fixed time step in s.
+    pub fixed: Option<f64>,
+}
+
+impl Limits {
+    /// The time step for the largest sound speed, speed (m/s) and acceleration (m/s²), and its limit.
+    pub fn time_step(&self, sound_speed: f64, speed: f64, acceleration: f64) -> (f64, Limit) {
+        if let Some(dt) = self.fixed {
+            return (dt, Limit::Fixed);
+        }
+        let h = self.smoothing_length;
+        let mut best = (self.courant * h / (sound_speed + speed), Limit::Acoustic);
+        let viscous = 0.125 * h * h / self.viscosity;
+        if viscous < best.0 {
+            best = (viscous, Limit::Viscous);
+        }
+        let force = 0.25 * (h / acceleration).sqrt();
+        if force < best.0 {
+            best = (force, Limit::Force);
+        }
+        best
+    }
+}

@@ -1,0 +1,438 @@
+//! The pair sweep: the only hot loop.
+//!
+//! A pass sums something over the neighbours of every particle of a target set. Cell by cell, the candidates of the
+//! 3^D cells around are copied side by side, relative to a frame at the cell (positions are in double precision, their
+//! differences in the pair precision lose nothing). For each small cluster of the cell's particles those within reach
+//! of its bounding box are compacted, and each particle of the cluster then runs over them in whole vectors: no list
+//! is stored, nothing is gathered by index, and every particle's sum is its own, so that its bits do not depend on
+//! threads.
+
+mod gather;
+mod moment;
+mod pair;
+
+pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
+
+use crate::kernel::ChosenKernel;
+use crate::neighbours::{Cells, Grid};
+use crate::particles::Column;
+use crate::simd::{Lanes, Real, Task, dispatch, dot};
+use gather::Buffer;
+use std::ops::Range;
+use std::sync::{Mutex, PoisonError};
+
+/// Fields that a source can carry (`slot`).
+pub const SLOTS: usize = 9;
+/// Particles that share one selection of candidates.
+const CLUSTER: usize = 8;
+/// Least particles of one task.
+const TASK: usize = 512;
+
+/// Most columns that a pass writes.
+pub const OUTPUTS: usize = 6;
+
+/// Running sums of a pass over the neighbours of one particle; those that a pass does not use cost nothing.
+pub struct Sums<L, const D: usize> {
+    /// A scalar.
+    pub scalar: L,
+    /// A vector.
+    pub vector: [L; D],
+    /// A second vector.
+    pub gradient: [L; D],
+    /// A symmetric matrix: xx, yy, xy, then zz, yz, xz.
+    pub moment: [L; 6],
+}
+
+/// What is summed over neighbours, and what is made of the sums. Methods must be `#[inline(always)]`.
+pub trait Pass<R: Real, const D: usize>: Sync {
+    /// Adds a vector of fluid neighbours.
+    fn fluid<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        pair: &Pair<L, K, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        sums: &mut Sums<L, D>,
+    );
+
+    /// Adds a vector of wall neighbours.
+    fn wall<L: Lanes<Real = R>, K: ChosenKernel>(
+        &self,
+        _pair: &Pair<L, K, D>,
+        _own: &Splat<L, D>,
+        _other: &Other<L, D>,
+        _sums: &mut Sums<L, D>,
+    ) {
+    }
+
+    /// Makes the output of particle `i` of a task from its sums.
+    fn finish<L: Lanes<Real = R>>(
+        &self,
+        own: &Own<R, D>,
+        sums: &Sums<L, D>,
+        i: usize,
+        out: &mut Output<R>,
+    );
+}
+
+/// The columns that a pass writes: the first `D` for its vector, and so on, as the pass defines.
+pub type Output<'a, R> = [&'a mut [R]; OUTPUTS];
+
+/// A set of particles as pairs see it.
+pub struct Source<'a, R, const D: usize> {
+    /// Positions in m.
+    pub position: &'a [Column<f64>; D],
+    /// Particles by cell.
+    pub cells: &'a Cells,
+    fields: [(usize, *const R); SLOTS],
+    count: usize,
+}
+
+// SAFETY: the pointers are to columns borrowed for 'a and only read.
+unsafe impl<R: Sync, const D: usize> Sync for Source<'_, R, D> {}
+
+impl<'a, R: Real, const D: usize> Source<'a, R, D> {
+    /// A set without fields.
+    pub fn new(position: &'a [Column<f64>; D], cells: &'a Cells) -> Self {
+        Source {
+            position,
+            cells,
+            fields: [(0, std::ptr::null()); SLOTS],
+            count: 0,
+        }
+    }
+
+    /// Adds a scalar field.
+    pub fn with(mut self, slot: usize, column: &'a Column<R>) -> Self {
+        assert_eq!(column.len(), self.position[0].len());
+        self.fields[self.count] = (slot, column.as_ptr());
+        self.count += 1;
+        self
+    }
+
+    /// Adds the components of a vector field.
+    pub fn with_vector(self, slot: usize, columns: &'a [Column<R>; D]) -> Self {
+        (0..D).fold(self, |s, a| s.with(slot + a, &columns[a]))
+    }
+
+    #[inline(always)]
+    fn fields(&self) -> &[(usize, *const R)] {
+        &self.fields[..self.count]
+    }
+
+    #[inline(always)]
+    fn own(&self, i: usize) -> Own<R, D> {
+        let mut fields = [R::default(); SLOTS];
+        for &(slot, column) in self.fields() {
+            // SAFETY: `i` is a particle of this set.
+            fields[slot] = unsafe { *column.add(i) };
+        }
+        Own { fields }
+    }
+}
+
+/// Buffers of one thread.
+struct Workspace<R> {
+    candidates: [Buffer<R>; 2],
+    selected: [Buffer<R>; 2],
+}
+
+/// What stays between sweeps: buffers per thread, the kernel's constants.
+pub struct Sweeper<R> {
+    workspaces: Vec<Mutex<Workspace<R>>>,
+    smoothing_length: f64,
+}
+
+/// One pass over a target set.
+pub struct Sweep<'a, R, P, const D: usize> {
+    /// The grid of both sets.
+    pub grid: &'a Grid<D>,
+    /// For whom sums are made.
+    pub target: &'a Source<'a, R, D>,
+    /// Its fluid neighbours.
+    pub fluid: Option<&'a Source<'a, R, D>>,
+    /// Its wall neighbours.
+    pub wall: Option<&'a Source<'a, R, D>>,
+    /// What is summed.
+    pub pass: &'a P,
+}
+
+impl<R: Real> Sweeper<R> {
+    /// Buffers for `threads` threads.
+    pub fn new(threads: usize, smoothing_length: f64) -> Self {
+        let workspace = || {
+            Mutex::new(Workspace {
+                candidates: [Buffer::new(), Buffer::new()],
+                selected: [Buffer::new(), Buffer::new()],
+            })
+        };
+        Sweeper {
+            workspaces: (0..threads.max(1)).map(|_| workspace()).collect(),
+            smoothing_length,
+        }
+    }
+
+    /// Forgets what the buffers hold.
+    pub fn wipe(&self) {
+        for workspace in &self.workspaces {
+            let mut w = workspace.lock().unwrap_or_else(PoisonError::into_inner);
+            let Workspace {
+                candidates,
+                selected,
+            } = &mut *w;
+            candidates.iter_mut().chain(selected).for_each(Buffer::wipe);
+        }
+    }
+
+    /// Runs a pass with `kernel`; `out` are columns of the target.
+    pub fn run<K: ChosenKernel, P: Pass<R, D>, const D: usize>(
+        &self,
+        kernel: K,
+        sweep: &Sweep<R, P, D>,
+        out: Output<R>,
+    ) {
+        let n = sweep.target.position[0].len();
+        let tasks = (n / TASK).clamp(1, 4096);
+        self.split(kernel, sweep, 0..tasks, n, tasks, out);
+    }
+
+    /// Halves the tasks until one is left; every half gets its own part of the output.
+    fn split<K: ChosenKernel, P: Pass<R, D>, const D: usize>(
+        &self,
+        kernel: K,
+        sweep: &Sweep<R, P, D>,
+        tasks: Range<usize>,
+        n: usize,
+        of: usize,
+        out: Output<R>,
+    ) {
+        let cells = sweep.target.cells;
+        let boundary = |task: usize| {
+            if task == of {
+                cells.count()
+            } else {
+                cells.cell_from(task * n / of)
+            }
+        };
+        let (first, end) = (boundary(tasks.start), boundary(tasks.end));
+        if first == end {
+            return;
+        }
+        if tasks.len() == 1 {
+            let thread = rayon::current_thread_index().unwrap_or(0) % self.workspaces.len();
+            let mut workspace = self.workspaces[thread]
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner);
+            dispatch(Slab {
+                sweep,
+                h: self.smoothing_length,
+                cells: first..end,
+                workspace: &mut *workspace,
+                out,
+                kernel,
+            });
+            return;
+        }
+        let middle = tasks.start + tasks.len() / 2;
+        let at = cells.particles(first, boundary(middle)).len();
+        let mut right: Output<R> = std::array::from_fn(|_| Default::default());
+        let mut left: Output<R> = std::array::from_fn(|_| Default::default());
+        for (k, column) in out.into_iter().enumerate() {
+            (left[k], right[k]) = if column.is_empty() {
+                (column, Default::default())
+            } else {
+                column.split_at_mut(at)
+            };
+        }
+        rayon::join(
+            || self.split(kernel, sweep, tasks.start..middle, n, of, left),
+            || self.split(kernel, sweep, middle..tasks.end, n, of, right),
+        );
+    }
+
+    /// Bytes held.
+    pub fn bytes(&self) -> usize {
+        self.workspaces
+            .iter()
+            .map(|w| {
+                let w = w.lock().unwrap_or_else(PoisonError::into_inner);
+                w.candidates
+                    .iter()
+                    .chain(&w.selected)
+                    .map(Buffer::bytes)
+                    .sum::<usize>()
+            })
+            .sum()
+    }
+}
+
+/// Some consecutive cells: the work of one task.
+struct Slab<'a, 'b, R, K, P, const D: usize> {
+    sweep: &'a Sweep<'a, R, P, D>,
+    h: f64,
+    cells: Range<usize>,
+    workspace: &'a mut Workspace<R>,
+    out: Output<'b, R>,
+    kernel: K,
+}
+
+impl<R: Real, K: ChosenKernel, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, K, P, D> {
+    type Output = ();
+
+    #[inline(always)]
+    fn run<L: Lanes<Real = R>>(mut self) {
+        let Sweep {
+            grid,
+            target,
+            fluid,
+            wall,
+            pass,
+        } = self.sweep;
+        let geometry = Geometry::<L, K, D>::new(self.kernel, self.h);
+        let reach = R::from_f64(self.h * self.kernel.support() * (1.0 + 1e-5));
+        let edge = grid.edge();
+        let start = target
+            .cells
+            .particles(self.cells.start, self.cells.start)
+            .start;
+        let Workspace {
+            candidates,
+            selected,
+        } = &mut *self.workspace;
+        let sources = [*fluid, *wall];
+        for cell in self.cells.clone() {
+            let particles = target.cells.particles(cell, cell + 1);
+            let mut frame: Option<[f64; D]> = None;
+            let mut first = particles.start;
+            while first < particles.end {
+                let at = |i: usize| -> [f64; D] { std::array::from_fn(|a| target.position[a][i]) };
+                let near = |frame: &[f64; D], i: usize| {
+                    // Written so that a position that is not a number is near nothing.
+                    (0..D).all(|a| (target.position[a][i] - frame[a]).abs() <= 2.0 * edge[a])
+                };
+                let origin = match frame {
+                    Some(origin) if near(&origin, first) => origin,
+                    _ => {
+                        let origin = at(first);
+                        for (buffer, source) in candidates.iter_mut().zip(sources) {
+                            if let Some(source) = source {
+                                buffer.gather::<L, D>(source, grid, cell, &origin);
+                            }
+                        }
+                        frame = Some(origin);
+                        origin
+                    }
+                };
+                let mut end = first + 1;
+                while end < particles.end && end < first + CLUSTER && near(&origin, end) {
+                    end += 1;
+                }
+                let relative = |i: usize| -> [R; D] {
+                    std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
+                };
+                let mut low = relative(first);
+                let mut high = low;
+                for i in first + 1..end {
+                    let x = relative(i);
+                    for a in 0..D {
+                        low[a] = Lanes::min(x[a], low[a]);
+                        high[a] = Lanes::max(x[a], high[a]);
+                    }
+                }
+                for s in 0..2 {
+                    if let Some(source) = sources[s] {
+                        selected[s].select::<L, D>(&candidates[s], source, &low, &high, reach);
+                    }
+                }
+                for i in first..end {
+                    let own = target.own(i);
+                    let x = relative(i).map(L::splat);
+                    let mut sums = Sums::zero();
+                    if fluid.is_some() {
+                        geometry.each(&x, &selected[0], |pair, other| {
+                            pass.fluid(pair, &Splat(&own), other, &mut sums)
+                        });
+                    }
+                    if wall.is_some() {
+                        geometry.each(&x, &selected[1], |pair, other| {
+                            pass.wall(pair, &Splat(&own), other, &mut sums)
+                        });
+                    }
+                    pass.finish(&own, &sums, i - start, &mut self.out);
+                }
+                first = end;
+            }
+        }
+    }
+}
+
+impl<L: Lanes, const D: usize> Sums<L, D> {
+    #[inline(always)]
+    fn zero() -> Self {
+        Sums {
+            scalar: L::zero(),
+            vector: [L::zero(); D],
+            gradient: [L::zero(); D],
+            moment: [L::zero(); 6],
+        }
+    }
+}
+
+/// Constants of the kernel as lanes.
+struct Geometry<L, K, const D: usize> {
+    inverse_h: L,
+    support2: L,
+    value: L,
+    slope: L,
+    tiny: L,
+    kernel: K,
+}
+
+impl<L: Lanes, K: ChosenKernel, const D: usize> Geometry<L, K, D> {
+    #[inline(always)]
+    fn new(kernel: K, h: f64) -> Self {
+        let sigma = kernel.normalisation(D);
+        Geometry {
+            inverse_h: L::constant(1.0 / h),
+            support2: L::constant((h * kernel.support()).powi(2)),
+            value: L::constant(sigma / h.powi(D as i32)),
+            slope: L::constant(sigma / h.powi(D as i32 + 2)),
+            tiny: L::constant(1e-18 * h * h),
+            kernel,
+        }
+    }
+
+    /// Calls `visit` for every vector of `others` around `x`.
+    #[inline(always)]
+    fn each(
+        &self,
+        x: &[L; D],
+        others: &Buffer<L::Real>,
+        mut visit: impl FnMut(&Pair<L, K, D>, &Other<L, D>),
+    ) {
+        let stride = others.stride();
+        for k in (0..others.len()).step_by(L::N) {
+            let other = Other::<L, D> {
+                at: others.column(0).wrapping_add(k),
+                stride,
+            };
+            let separation = std::array::from_fn(|a| {
+                // SAFETY: the buffer is closed by a whole vector of particles out of reach.
+                x[a] - unsafe { L::load(other.at.add(a * stride)) }
+            });
+            let squared = dot(&separation, &separation);
+            let inside = squared.less(self.support2);
+            let q = squared.max(self.tiny).sqrt() * self.inverse_h;
+            let slope = (self.slope * self.kernel.slope_over_q(q)).only(inside);
+            let pair = Pair {
+                separation,
+                squared,
+                slope,
+                q,
+                inside,
+                normalisation: self.value,
+                kernel: self.kernel,
+            };
+            visit(&pair, &other);
+        }
+    }
+}

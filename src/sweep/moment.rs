@@ -1,0 +1,62 @@
+//! The symmetric moment matrix `Σ w r ⊗ r` of a particle's neighbours, and its inverse.
+
+use super::Sums;
+use crate::simd::{Lanes, Real};
+
+/// Below this determinant (1 in the interior, where the trace is D) neighbours do not span the space well enough.
+const SINGULAR: f64 = 1e-3;
+
+impl<L: Lanes, const D: usize> Sums<L, D> {
+    /// Adds `weight r ⊗ r`.
+    #[inline(always)]
+    pub fn add_moment(&mut self, weight: L, r: &[L; D]) {
+        let m = &mut self.moment;
+        let w: [L; D] = std::array::from_fn(|a| weight * r[a]);
+        m[0] = w[0].mul_add(r[0], m[0]);
+        m[1] = w[1].mul_add(r[1], m[1]);
+        m[2] = w[0].mul_add(r[1], m[2]);
+        if D == 3 {
+            m[3] = w[2].mul_add(r[2], m[3]);
+            m[4] = w[1].mul_add(r[2], m[4]);
+            m[5] = w[0].mul_add(r[2], m[5]);
+        }
+    }
+
+    /// The inverse of the moment matrix times `v`; `v` itself where the matrix is singular.
+    #[inline(always)]
+    pub fn renormalise(&self, v: [L::Real; D]) -> [L::Real; D] {
+        let singular = L::Real::from_f64(SINGULAR);
+        let one = L::Real::from_f64(1.0);
+        let (xx, yy, xy) = (
+            self.moment[0].sum(),
+            self.moment[1].sum(),
+            self.moment[2].sum(),
+        );
+        let mut out = v;
+        if D == 2 {
+            let determinant = xx * yy - xy * xy;
+            if determinant > singular {
+                let inverse = one / determinant;
+                out[0] = (yy * v[0] - xy * v[1]) * inverse;
+                out[1] = (xx * v[1] - xy * v[0]) * inverse;
+            }
+        } else {
+            let (zz, yz, xz) = (
+                self.moment[3].sum(),
+                self.moment[4].sum(),
+                self.moment[5].sum(),
+            );
+            // Cofactors of the symmetric matrix.
+            let (a, b, c) = (yy * zz - yz * yz, xz * yz - xy * zz, xy * yz - xz * yy);
+            let (d, e, f) = (xx * zz - xz * xz, xy * xz - xx * yz, xx * yy - xy * xy);
+            let determinant = xx * a + xy * b + xz * c;
+            if determinant > singular {
+                let inverse = one / determinant;
+                out[0] = (a * v[0] + b * v[1] + c * v[2]) * inverse;
+                out[1] = (b * v[0] + d * v[1] + e * v[2]) * inverse;
+                out[2] = (c * v[0] + e * v[1] + f * v[2]) * inverse;
+            }
+        }
+        out
+    }
+}
