@@ -341,6 +341,8 @@ def picture(scene: Scene, path: str | Path) -> Path:
 
 def _view(axes: Axes, scene: Scene, bodies: list[Body], a: int, b: int, width: float) -> None:
     """One view along the axis that is neither ``a`` nor ``b``."""
+    from matplotlib.patheffects import withStroke
+
     from kolk.render.style import REFERENCE, RUN, WALL, bare
 
     wet = ["#2f7fc1", "#66b3a6", "#8a7fc7", "#c9a24b"]
@@ -379,6 +381,7 @@ def _view(axes: Axes, scene: Scene, bodies: list[Body], a: int, b: int, width: f
                 textcoords="offset points",
                 fontsize=7,
                 color=REFERENCE,
+                path_effects=[withStroke(linewidth=2.0, foreground="white")],
             )
     for axis, spot in ((a, axes.axvline), (b, axes.axhline)):
         interval = scene.periodic_axes[axis]
@@ -395,7 +398,7 @@ def _seen(scene: Scene, body: Body, a: int, b: int) -> FloatArray:
     if wall is not None and wall.shape is not None and isinstance(wall.shape.shape, Tank):
         depth = body.position[:, 3 - a - b]
         middle = 0.5 * (depth.min() + depth.max())
-        return body.position[np.abs(depth - middle) < 0.75 * scene.spacing]
+        return np.asarray(body.position[np.abs(depth - middle) < 0.75 * scene.spacing])
     cells = np.round(body.position[:, [a, b]] / (0.05 * scene.spacing)).astype(np.int64)
     _, first = np.unique(cells, axis=0, return_index=True)
-    return body.position[first]
+    return np.asarray(body.position[first])

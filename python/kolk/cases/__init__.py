@@ -76,7 +76,7 @@ def get(name: str) -> Case:
         from kolk.scene.base import nearest
 
         raise SceneError(
-            f"no built-in scene is called '{name}'{nearest(name, names())}; "
+            f"no built-in scene is called '{name}'{nearest(name, names()) or ';'} "
             f"there is {', '.join(names())}"
         )
     case = import_module(f"{__name__}.{name.replace('-', '_')}").case

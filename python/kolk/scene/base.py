@@ -69,7 +69,7 @@ class Model(BaseModel):
         arbitrary_types_allowed=True,
     )
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, **data: Any) -> None:
         try:
             super().__init__(**data)
         except ValidationError as error:
@@ -130,6 +130,8 @@ def shown(value: Any) -> str:
     """``value`` as a message shows it: as in a scene file, and never longer than a line."""
     if isinstance(value, bool):
         return "true" if value else "false"
+    if isinstance(value, tuple):
+        value = list(value)
     text = repr(value) if not isinstance(value, str) else f'"{value}"'
     return text if len(text) <= 60 else text[:57] + "..."
 
@@ -138,7 +140,8 @@ def _message(model: type[Model], detail: ErrorDetails) -> str:
     kind, context, value = detail["type"], detail.get("ctx", {}), detail["input"]
     if kind == "extra_forbidden":
         key = str(detail["loc"][-1])
-        return f"unknown key{nearest(key, model.keys())} Allowed here: {', '.join(model.keys())}"
+        hint = nearest(key, model.keys()) or "."
+        return f"unknown key{hint} Allowed here: {', '.join(model.keys())}"
     if kind == "missing":
         return "is missing: add it"
     if kind == "value_error":

@@ -19,16 +19,11 @@ MATERIAL = ("density", "sound_speed", "viscosity", "eos", "gamma")
 
 def check_consistency(scene: Scene) -> None:
     """Raise one SceneError with everything in which the parts of ``scene`` disagree."""
-    problems = [
-        *_names(scene),
-        *_lengths(scene),
-        *_materials(scene),
-        *_probes(scene),
-        *_periods(scene),
-        *_numerics(scene),
-    ]
-    if problems:
-        raise SceneError(problems=problems)
+    # The later checks calculate with vectors: their lengths must be right.
+    for checks in ((_names, _lengths), (_materials, _probes, _periods, _numerics)):
+        problems = [problem for find in checks for problem in find(scene)]
+        if problems:
+            raise SceneError(problems=problems)
 
 
 def _bodies(scene: Scene) -> Iterator[tuple[str, Fluid | Wall]]:
@@ -143,7 +138,7 @@ def _probes(scene: Scene) -> Iterator[Problem]:
 
 def _no_body(name: str, kind: str, known: list[str]) -> str:
     have = f"there is {', '.join(known)}" if known else f"the scene has no {kind}"
-    return f'found "{name}", which is no {kind}{nearest(name, known)}; {have}'
+    return f'found "{name}", which is no {kind}{nearest(name, known) or ";"} {have}'
 
 
 def _periods(scene: Scene) -> Iterator[Problem]:

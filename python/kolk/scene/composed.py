@@ -141,9 +141,8 @@ class Union(Shape):
 
     parts: tuple[ShapeTable, ...] = Field(min_length=1)
 
-    def __init__(self, parts: Sequence[Any] = (), **data: Any) -> None:
-        data["parts"] = parts
-        super().__init__(**data)
+    def __init__(self, parts: Sequence[Any] = (), /, **data: Any) -> None:
+        super().__init__(**({"parts": parts} | data))
 
     def distance(self, points: FloatArray) -> FloatArray:
         return np.asarray(np.minimum.reduce([s.shape.distance(points) for s in self.parts]))

@@ -88,8 +88,8 @@ def _check(node: ast.expr, text: str) -> None:
     if isinstance(node, ast.Name):
         if node.id in _AXES or node.id == "pi":
             return
-        hint = nearest(node.id, [*FUNCTIONS, "x", "y", "z", "pi"])
-        raise ValueError(f"unknown name '{node.id}' in {shown(text)}{hint} Note: {_HELP}")
+        hint = nearest(node.id, [*FUNCTIONS, "x", "y", "z", "pi"]) or ";"
+        raise ValueError(f"unknown name '{node.id}' in {shown(text)}{hint} {_HELP}")
     if isinstance(node, ast.BinOp) and type(node.op) in _BINARY:
         _check(node.left, text)
         _check(node.right, text)
@@ -100,10 +100,8 @@ def _check(node: ast.expr, text: str) -> None:
     if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and not node.keywords:
         name = node.func.id
         if name not in FUNCTIONS:
-            raise ValueError(
-                f"unknown function '{name}' in {shown(text)}{nearest(name, FUNCTIONS)} "
-                f"Note: {_HELP}"
-            )
+            hint = nearest(name, FUNCTIONS) or ";"
+            raise ValueError(f"unknown function '{name}' in {shown(text)}{hint} {_HELP}")
         wanted = 2 if name in _TWO_ARGUMENTS else 1
         if len(node.args) != wanted:
             raise ValueError(

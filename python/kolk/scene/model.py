@@ -65,7 +65,7 @@ class Scene(Model):
     numerics: Numerics = Numerics()
     output: Output = Output()
 
-    def __init__(self, **data: Any) -> None:
+    def __init__(self, /, **data: Any) -> None:
         from .checks import check_consistency
 
         super().__init__(**data)
@@ -202,7 +202,7 @@ def _put(data: dict[str, Any], key: str, value: Any) -> None:
                     problems=[
                         Problem(
                             path,
-                            f"names nothing{nearest(part, known)}; there is {', '.join(known)}",
+                            f"names nothing{nearest(part, known) or ';'} there is {', '.join(known)}",
                         )
                     ]
                 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -36,14 +37,18 @@ OfPosition = Callable[[FloatArray], FloatArray]
 def _number(value: Any) -> float | None:
     if isinstance(value, np.generic):
         value = value.item()
-    if isinstance(value, (int, float)) and not isinstance(value, bool) and np.isfinite(value):
-        return float(value)
-    return None
+    if not isinstance(value, (int, float)) or isinstance(value, bool):
+        return None
+    try:
+        number = float(value)
+    except OverflowError:
+        return None
+    return number if math.isfinite(number) else None
 
 
 def _sound_speed(value: Any) -> Any:
     number = _number(value)
-    if value == "auto" or (number is not None and number > 0.0):
+    if (isinstance(value, str) and value == "auto") or (number is not None and number > 0.0):
         return value if number is None else number
     raise ValueError(f'found {shown(value)}, must be "auto" or a speed greater than 0 in m/s')
 
@@ -75,10 +80,10 @@ def _velocity(value: Any) -> Any:
 
 
 def _pressure(value: Any) -> Any:
-    if callable(value) or value in ("hydrostatic", "zero"):
+    if callable(value):
         return value
     if isinstance(value, str):
-        return Expression(value)
+        return value if value in ("hydrostatic", "zero") else Expression(value)
     raise ValueError(
         f'found {shown(value)}, must be "hydrostatic", "zero" or an expression in quotes (Pa)'
     )
