@@ -299,9 +299,7 @@ def test_pictures_and_comparison_cannot_fail_a_run(
     assert run.summary["notes"] == notes
 
 
-def test_missing_picture_libraries_are_named(
-    tank: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_missing_picture_libraries_are_named(tank: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     import kolk.render
 
     monkeypatch.setattr(kolk.render, "render_run", lambda *_, **__: [])
