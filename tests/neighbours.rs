@@ -10,9 +10,15 @@ fn same<const D: usize>(position: &[[f64; D]], radius: f64, periodic: Periods<D>
     assert_eq!(found, all_pairs(position, radius, &periodic));
     assert_eq!(found.offsets.len(), position.len() + 1);
     for i in 0..position.len() {
-        assert!(found.row(i).windows(2).all(|pair| pair[0] < pair[1]), "row {i} is not ascending");
+        assert!(
+            found.row(i).windows(2).all(|pair| pair[0] < pair[1]),
+            "row {i} is not ascending"
+        );
         for &j in found.row(i) {
-            assert!(found.row(j as usize).binary_search(&(i as u32)).is_ok(), "{i}-{j} is one-sided");
+            assert!(
+                found.row(j as usize).binary_search(&(i as u32)).is_ok(),
+                "{i}-{j} is one-sided"
+            );
         }
     }
     found
@@ -82,7 +88,16 @@ fn periodic_axes_join_their_ends() {
 fn no_points_one_point_and_points_that_are_not_numbers() {
     assert_eq!(same::<2>(&[], 1.0, [None; 2]).offsets, [0]);
     assert_eq!(same(&[[1.0, 2.0]], 1.0, [None; 2]).offsets, [0, 0]);
-    let found = same(&[[0.0, 0.0], [f64::NAN, 0.0], [f64::INFINITY, 0.0], [0.1, 0.0]], 1.0, [None; 2]);
+    let found = same(
+        &[
+            [0.0, 0.0],
+            [f64::NAN, 0.0],
+            [f64::INFINITY, 0.0],
+            [0.1, 0.0],
+        ],
+        1.0,
+        [None; 2],
+    );
     assert_eq!(found.offsets, [0, 1, 1, 1, 2]);
 }
 
@@ -105,6 +120,12 @@ fn seconds(side: usize, stray: f64) -> f64 {
 fn a_stray_point_costs_nothing_and_the_cost_is_linear() {
     // Wide bounds: what they must catch is a quadratic search, 64 times slower here.
     let (small, large, stray) = (seconds(16, 0.0), seconds(64, 0.0), seconds(64, 1e12));
-    assert!(large < 64.0 * 8.0 * small, "{small} s for 16³ points, {large} s for 64³");
-    assert!(stray < 8.0 * large, "{large} s without, {stray} s with a stray point");
+    assert!(
+        large < 64.0 * 8.0 * small,
+        "{small} s for 16³ points, {large} s for 64³"
+    );
+    assert!(
+        stray < 8.0 * large,
+        "{large} s without, {stray} s with a stray point"
+    );
 }

@@ -12,7 +12,10 @@ struct Noise(u64);
 
 impl Noise {
     fn next(&mut self) -> f64 {
-        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        self.0 = self
+            .0
+            .wrapping_mul(6_364_136_223_846_793_005)
+            .wrapping_add(1_442_695_040_888_963_407);
         (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
     }
 }
@@ -41,10 +44,21 @@ fn with_cloud<const D: usize>(
     let mut noise = Noise(3);
     let density = vec![1000.0; position.len()];
     let mass: Vec<f64> = (0..position.len())
-        .map(|_| 1000.0 * spacing.powi(D as i32) * (1.0 + if periodic { 0.0 } else { 0.05 * noise.next() }))
+        .map(|_| {
+            1000.0
+                * spacing.powi(D as i32)
+                * (1.0 + if periodic { 0.0 } else { 0.05 * noise.next() })
+        })
         .collect();
     let periods = [periodic.then_some([0.0, 1.0]); D];
-    test(&Cloud::new(position, &mass, &density, kernel, 1.5 * spacing, &periods));
+    test(&Cloud::new(
+        position,
+        &mass,
+        &density,
+        kernel,
+        1.5 * spacing,
+        &periods,
+    ));
 }
 
 fn linear_fields_are_exact<const D: usize>(side: usize, kernel: KernelName) {
@@ -52,16 +66,24 @@ fn linear_fields_are_exact<const D: usize>(side: usize, kernel: KernelName) {
     with_cloud(&position, 1.0 / side as f64, false, kernel, |cloud| {
         let slope = [[2.0, -3.0, 0.5], [0.7, 1.1, -4.0], [-1.3, 0.2, 0.9]];
         let field = |c: usize, x: &[f64; D]| 5.0 + (0..D).map(|a| slope[c][a] * x[a]).sum::<f64>();
-        let vector: Vec<[f64; D]> =
-            position.iter().map(|x| std::array::from_fn(|c| field(c, x))).collect();
+        let vector: Vec<[f64; D]> = position
+            .iter()
+            .map(|x| std::array::from_fn(|c| field(c, x)))
+            .collect();
         let found = gradient(cloud, vector.as_flattened(), D, true);
         for (k, found) in found.iter().enumerate() {
             let expected = slope[k / D % D][k % D];
-            assert!((found - expected).abs() < 1e-10, "{kernel} {D}D gradient {found}, {expected}");
+            assert!(
+                (found - expected).abs() < 1e-10,
+                "{kernel} {D}D gradient {found}, {expected}"
+            );
         }
         let expected: f64 = (0..D).map(|a| slope[a][a]).sum();
         for found in divergence(cloud, &vector, true) {
-            assert!((found - expected).abs() < 1e-10, "{kernel} {D}D divergence {found}, {expected}");
+            assert!(
+                (found - expected).abs() < 1e-10,
+                "{kernel} {D}D divergence {found}, {expected}"
+            );
         }
         for found in laplacian(cloud, vector.as_flattened(), D, true) {
             assert!(found.abs() < 1e-9, "{kernel} {D}D Laplacian {found}");
@@ -85,9 +107,18 @@ fn operators_converge_on_a_wave() {
         let (mass, density) = (vec![spacing * spacing; side * side], vec![1.0; side * side]);
         let periodic = [Some([0.0, 1.0]); 2];
         // Enough neighbours that the smoothing, which is of second order, is all of the error.
-        let cloud = Cloud::new(&position, &mass, &density, KernelName::WendlandC4, 2.5 * spacing, &periodic);
-        let wave: Vec<f64> =
-            position.iter().map(|x| (TAU * x[0]).sin() * (TAU * x[1]).cos()).collect();
+        let cloud = Cloud::new(
+            &position,
+            &mass,
+            &density,
+            KernelName::WendlandC4,
+            2.5 * spacing,
+            &periodic,
+        );
+        let wave: Vec<f64> = position
+            .iter()
+            .map(|x| (TAU * x[0]).sin() * (TAU * x[1]).cos())
+            .collect();
         let mut worst = [0.0_f64; 2];
         for corrected in [false, true] {
             let slope = gradient(&cloud, &wave, 1, corrected);
@@ -103,7 +134,10 @@ fn operators_converge_on_a_wave() {
     };
     let (coarse, fine) = (error(24), error(48));
     for k in 0..2 {
-        assert!(fine[k] < 0.03 && fine[k] < 0.3 * coarse[k], "{coarse:?} to {fine:?}");
+        assert!(
+            fine[k] < 0.03 && fine[k] < 0.3 * coarse[k],
+            "{coarse:?} to {fine:?}"
+        );
     }
 }
 
@@ -111,20 +145,38 @@ fn operators_converge_on_a_wave() {
 fn interpolation_is_exact_for_constants_and_says_where_nothing_is() {
     let position = points::<3>(8, 0.3);
     with_cloud(&position, 0.125, false, KernelName::Quintic, |cloud| {
-        let value: Vec<f64> = (0..2 * position.len()).map(|k| if k % 2 == 0 { 4.5 } else { -1.0 }).collect();
-        let found = interpolate(cloud, &[[0.5; 3], [0.0; 3], [9.0; 3]], &value, 2, true, f64::NAN);
+        let value: Vec<f64> = (0..2 * position.len())
+            .map(|k| if k % 2 == 0 { 4.5 } else { -1.0 })
+            .collect();
+        let found = interpolate(
+            cloud,
+            &[[0.5; 3], [0.0; 3], [9.0; 3]],
+            &value,
+            2,
+            true,
+            f64::NAN,
+        );
         for (found, expected) in found.iter().zip([4.5, -1.0, 4.5, -1.0]) {
             assert!((found - expected).abs() < 1e-12);
         }
         assert!(found[4].is_nan() && found[5].is_nan());
-        let plain = interpolate(cloud, &[[0.5; 3], [0.0; 3]], &vec![1.0; position.len()], 1, false, 0.0);
+        let plain = interpolate(
+            cloud,
+            &[[0.5; 3], [0.0; 3]],
+            &vec![1.0; position.len()],
+            1,
+            false,
+            0.0,
+        );
         assert!((plain[0] - 1.0).abs() < 0.1 && plain[1] < 0.3, "{plain:?}");
     });
 }
 
 #[test]
 fn singular_arrangements_give_the_gradient_that_can_be_known() {
-    let line: Vec<[f64; 3]> = (0..9).map(|k| [0.6 * f64::from(k), 0.8 * f64::from(k), 1.0]).collect();
+    let line: Vec<[f64; 3]> = (0..9)
+        .map(|k| [0.6 * f64::from(k), 0.8 * f64::from(k), 1.0])
+        .collect();
     with_cloud(&line, 1.0, false, KernelName::WendlandC2, |cloud| {
         let value: Vec<f64> = line.iter().map(|x| 3.0 * x[0] + x[2]).collect();
         for slope in gradient(cloud, &value, 1, true).chunks(3) {
@@ -134,21 +186,34 @@ fn singular_arrangements_give_the_gradient_that_can_be_known() {
             }
         }
     });
-    with_cloud(&[[0.0, 0.0], [0.0, 0.0], [50.0, 0.0]], 1.0, false, KernelName::Cubic, |cloud| {
-        let value = [1.0, 2.0, 3.0];
-        assert_eq!(corrections(cloud), [[[0.0; 2]; 2]; 3]);
-        assert_eq!(gradient(cloud, &value, 1, true), [0.0; 6]);
-        assert!(laplacian(cloud, &value, 1, true).iter().all(|x| x.is_finite()));
-        let between = interpolate(cloud, &[[0.0, 0.0]], &value, 1, true, 0.0)[0];
-        assert!((between - 1.5).abs() < 0.05, "{between}");
-    });
+    with_cloud(
+        &[[0.0, 0.0], [0.0, 0.0], [50.0, 0.0]],
+        1.0,
+        false,
+        KernelName::Cubic,
+        |cloud| {
+            let value = [1.0, 2.0, 3.0];
+            assert_eq!(corrections(cloud), [[[0.0; 2]; 2]; 3]);
+            assert_eq!(gradient(cloud, &value, 1, true), [0.0; 6]);
+            assert!(
+                laplacian(cloud, &value, 1, true)
+                    .iter()
+                    .all(|x| x.is_finite())
+            );
+            let between = interpolate(cloud, &[[0.0, 0.0]], &value, 1, true, 0.0)[0];
+            assert!((between - 1.5).abs() < 0.05, "{between}");
+        },
+    );
     assert!((smallest_eigenvalue(&[[2.0, 1.0], [1.0, 2.0]]) - 1.0).abs() < 1e-14);
 }
 
 /// A column of water at rest: Tait's density under gravity.
 fn hydrostatic(position: &[[f64; 2]], sound_speed: f64) -> Vec<f64> {
     let stiffness = 1000.0 * sound_speed * sound_speed / 7.0;
-    position.iter().map(|x| 1000.0 * (1.0 + 9810.0 * (1.0 - x[1]) / stiffness).powf(1.0 / 7.0)).collect()
+    position
+        .iter()
+        .map(|x| 1000.0 * (1.0 + 9810.0 * (1.0 - x[1]) / stiffness).powf(1.0 / 7.0))
+        .collect()
 }
 
 #[test]
@@ -156,15 +221,31 @@ fn density_diffusion_leaves_alone_what_it_should_and_conserves_mass() {
     let (position, c) = (points::<2>(20, 0.35), 45.0);
     let mass = vec![2.5; position.len()];
     let density = hydrostatic(&position, c);
-    let fourtakas =
-        Diffusion::Fourtakas { gravity: [0.0, -9.81], reference_density: 1000.0, gamma: 7.0 };
+    let fourtakas = Diffusion::Fourtakas {
+        gravity: [0.0, -9.81],
+        reference_density: 1000.0,
+        gamma: 7.0,
+    };
     let worst = |density: &[f64], form| {
-        let cloud = Cloud::new(&position, &mass, density, KernelName::WendlandC2, 0.075, &[None; 2]);
+        let cloud = Cloud::new(
+            &position,
+            &mass,
+            density,
+            KernelName::WendlandC2,
+            0.075,
+            &[None; 2],
+        );
         let rate = density_diffusion(&cloud, form, 0.1, c);
         let sum: f64 = rate.iter().zip(&cloud.volume).map(|(d, v)| d * v).sum();
-        (rate.iter().fold(0.0, |worst: f64, d| worst.max(d.abs())), sum)
+        (
+            rate.iter().fold(0.0, |worst: f64, d| worst.max(d.abs())),
+            sum,
+        )
     };
-    let linear: Vec<f64> = position.iter().map(|x| 1000.0 + 2.0 * x[0] - 3.0 * x[1]).collect();
+    let linear: Vec<f64> = position
+        .iter()
+        .map(|x| 1000.0 + 2.0 * x[0] - 3.0 * x[1])
+        .collect();
     assert!(worst(&linear, Diffusion::Antuono).0 < 1e-9);
     // At rest Molteni's form raises the surface's density; the others balance.
     let molteni = worst(&density, Diffusion::Molteni).0;
@@ -175,7 +256,10 @@ fn density_diffusion_leaves_alone_what_it_should_and_conserves_mass() {
     let rough: Vec<f64> = density.iter().map(|d| d + noise.next()).collect();
     for form in [Diffusion::Molteni, Diffusion::Antuono] {
         let (rate, sum) = worst(&rough, form);
-        assert!(rate > 1.0 && sum.abs() < 1e-10 * rate, "{form:?}: {rate}, {sum}");
+        assert!(
+            rate > 1.0 && sum.abs() < 1e-10 * rate,
+            "{form:?}: {rate}, {sum}"
+        );
     }
 }
 
@@ -184,15 +268,28 @@ fn density_diffusion_smooths_at_the_rate_of_its_diffusivity() {
     let (side, c, delta) = (40, 30.0, 0.1);
     let position = points::<2>(side, 0.0);
     let spacing = 1.0 / side as f64;
-    let density: Vec<f64> = position.iter().map(|x| 1000.0 + (TAU * x[0]).sin()).collect();
+    let density: Vec<f64> = position
+        .iter()
+        .map(|x| 1000.0 + (TAU * x[0]).sin())
+        .collect();
     let mass: Vec<f64> = density.iter().map(|d| d * spacing * spacing).collect();
     let h = 1.5 * spacing;
-    let cloud = Cloud::new(&position, &mass, &density, KernelName::WendlandC2, h, &[Some([0.0, 1.0]); 2]);
+    let cloud = Cloud::new(
+        &position,
+        &mass,
+        &density,
+        KernelName::WendlandC2,
+        h,
+        &[Some([0.0, 1.0]); 2],
+    );
     let rate = density_diffusion(&cloud, Diffusion::Molteni, delta, c);
     for (rate, density) in rate.iter().zip(&density) {
         // δ h c0 ∇²ρ
         let expected = -delta * h * c * TAU * TAU * (density - 1000.0);
-        assert!((rate - expected).abs() < 0.03 * delta * h * c * TAU * TAU, "{rate}, {expected}");
+        assert!(
+            (rate - expected).abs() < 0.03 * delta * h * c * TAU * TAU,
+            "{rate}, {expected}"
+        );
     }
 }
 
@@ -201,33 +298,52 @@ fn the_free_surface_of_a_square_is_its_rim() {
     let side = 16;
     for jitter in [0.0, 0.1] {
         let position = points::<2>(side, jitter);
-        with_cloud(&position, 1.0 / side as f64, false, KernelName::WendlandC2, |cloud| {
-            let surface = free_surface(cloud);
-            for (k, &on) in surface.on.iter().enumerate() {
-                let (x, y) = (k % side, k / side);
-                let rim = x.min(y).min(side - 1 - x).min(side - 1 - y) == 0;
-                assert_eq!(on, rim, "particle ({x}, {y}), eigenvalue {}", surface.eigenvalue[k]);
-            }
-            let top = surface.normal[side * (side - 1) + side / 2];
-            assert!(top[1] > 0.95, "{top:?}");
-        });
+        with_cloud(
+            &position,
+            1.0 / side as f64,
+            false,
+            KernelName::WendlandC2,
+            |cloud| {
+                let surface = free_surface(cloud);
+                for (k, &on) in surface.on.iter().enumerate() {
+                    let (x, y) = (k % side, k / side);
+                    let rim = x.min(y).min(side - 1 - x).min(side - 1 - y) == 0;
+                    assert_eq!(
+                        on, rim,
+                        "particle ({x}, {y}), eigenvalue {}",
+                        surface.eigenvalue[k]
+                    );
+                }
+                let top = surface.normal[side * (side - 1) + side / 2];
+                assert!(top[1] > 0.95, "{top:?}");
+            },
+        );
     }
 }
 
 fn unevenness<const D: usize>(position: &[[f64; D]], side: usize) -> f64 {
     let mut sum = 0.0;
-    with_cloud(position, 1.0 / side as f64, true, KernelName::WendlandC2, |cloud| {
-        let value = vec![1.0; position.len()];
-        let whole = interpolate(cloud, position, &value, 1, false, 0.0);
-        let mean = whole.iter().sum::<f64>() / whole.len() as f64;
-        sum = whole.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / whole.len() as f64;
-    });
+    with_cloud(
+        position,
+        1.0 / side as f64,
+        true,
+        KernelName::WendlandC2,
+        |cloud| {
+            let value = vec![1.0; position.len()];
+            let whole = interpolate(cloud, position, &value, 1, false, 0.0);
+            let mean = whole.iter().sum::<f64>() / whole.len() as f64;
+            sum = whole.iter().map(|w| (w - mean).powi(2)).sum::<f64>() / whole.len() as f64;
+        },
+    );
     sum.sqrt()
 }
 
 fn shifting_spreads_particles<const D: usize>(side: usize) {
     let spacing = 1.0 / side as f64;
-    let sun = Shift::Sun { time_step: 0.1 * spacing, speed: 1.0 };
+    let sun = Shift::Sun {
+        time_step: 0.1 * spacing,
+        speed: 1.0,
+    };
     for (form, steps) in [(sun, 60), (Shift::Lind, 20)] {
         let mut position = points::<D>(side, 0.3);
         let before = unevenness(&position, side);
@@ -241,7 +357,10 @@ fn shifting_spreads_particles<const D: usize>(side: usize) {
             }
         }
         let after = unevenness(&position, side);
-        assert!(after < 0.5 * before, "{form:?} in {D}D: {before} to {after}");
+        assert!(
+            after < 0.5 * before,
+            "{form:?} in {D}D: {before} to {after}"
+        );
     }
 }
 
@@ -255,18 +374,26 @@ fn shifting_spreads_particles_evenly() {
 fn shifting_never_pushes_through_the_free_surface() {
     let side = 16;
     let position = points::<2>(side, 0.1);
-    with_cloud(&position, 1.0 / side as f64, false, KernelName::WendlandC2, |cloud| {
-        let surface = free_surface(cloud);
-        let free = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, false);
-        let kept = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, true);
-        let mut outward = 0.0_f64;
-        for i in (0..position.len()).filter(|&i| surface.on[i]) {
-            let along = |shift: &[f64; 2]| shift[0] * surface.normal[i][0] + shift[1] * surface.normal[i][1];
-            outward = outward.max(along(&free[i]));
-            assert!(along(&kept[i]).abs() < 1e-15);
-        }
-        assert!(outward > 0.005, "{outward}");
-        let middle = position.len() / 2 + side / 2;
-        assert_eq!(free[middle], kept[middle]);
-    });
+    with_cloud(
+        &position,
+        1.0 / side as f64,
+        false,
+        KernelName::WendlandC2,
+        |cloud| {
+            let surface = free_surface(cloud);
+            let free = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, false);
+            let kept = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, true);
+            let mut outward = 0.0_f64;
+            for i in (0..position.len()).filter(|&i| surface.on[i]) {
+                let along = |shift: &[f64; 2]| {
+                    shift[0] * surface.normal[i][0] + shift[1] * surface.normal[i][1]
+                };
+                outward = outward.max(along(&free[i]));
+                assert!(along(&kept[i]).abs() < 1e-15);
+            }
+            assert!(outward > 0.005, "{outward}");
+            let middle = position.len() / 2 + side / 2;
+            assert_eq!(free[middle], kept[middle]);
+        },
+    );
 }

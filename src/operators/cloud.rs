@@ -62,16 +62,13 @@ impl<'a, const D: usize> Cloud<'a, D> {
     /// Calls `visit(j, x - x_j, |x - x_j|)` for every particle whose kernel reaches `x`.
     #[inline]
     pub fn for_each_near(&self, x: &[f64; D], mut visit: impl FnMut(usize, [f64; D], f64)) {
-        self.grid.for_each_near(x, |j, d, squared| visit(j, d, squared.sqrt()));
+        self.grid
+            .for_each_near(x, |j, d, squared| visit(j, d, squared.sqrt()));
     }
 
     /// Calls `visit(j, r_ij, |r_ij|, F_ij)` with `∇_i W_ij = F_ij r_ij` for every neighbour of particle `i`.
     #[inline]
-    pub fn for_each_neighbour(
-        &self,
-        i: usize,
-        mut visit: impl FnMut(usize, [f64; D], f64, f64),
-    ) {
+    pub fn for_each_neighbour(&self, i: usize, mut visit: impl FnMut(usize, [f64; D], f64, f64)) {
         self.for_each_near(&self.position[i], |j, d, r| {
             if j != i {
                 visit(j, d, r, self.kernel.slope_over_r(r));
@@ -81,6 +78,10 @@ impl<'a, const D: usize> Cloud<'a, D> {
 
     /// `f(i)` of every particle, in parallel.
     pub(super) fn map<T: Send>(&self, f: impl Fn(usize) -> T + Sync + Send) -> Vec<T> {
-        (0..self.len()).into_par_iter().with_min_len(256).map(f).collect()
+        (0..self.len())
+            .into_par_iter()
+            .with_min_len(256)
+            .map(f)
+            .collect()
     }
 }

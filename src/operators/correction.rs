@@ -22,7 +22,9 @@ pub fn corrections<const D: usize>(cloud: &Cloud<D>) -> Vec<Matrix<D>> {
 /// `M_i = -Σ_j V_j r_ij ⊗ ∇W_ij`: about the unit matrix inside a fluid, half of it across a free surface.
 pub(super) fn moment<const D: usize>(cloud: &Cloud<D>, i: usize) -> Matrix<D> {
     let mut sum = [[0.0; D]; D];
-    cloud.for_each_neighbour(i, |j, d, _, slope| add_moment(&mut sum, -cloud.volume[j] * slope, &d));
+    cloud.for_each_neighbour(i, |j, d, _, slope| {
+        add_moment(&mut sum, -cloud.volume[j] * slope, &d)
+    });
     sum
 }
 

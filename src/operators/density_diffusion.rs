@@ -40,8 +40,16 @@ pub fn density_diffusion<const D: usize>(
     let explained = |i: usize, j: usize, d: &[f64; D]| match form {
         Diffusion::Molteni => 0.0,
         // r_ji = -d
-        Diffusion::Antuono => -0.5 * (0..D).map(|a| (slopes[i][a] + slopes[j][a]) * d[a]).sum::<f64>(),
-        Diffusion::Fourtakas { gravity, reference_density, gamma } => {
+        Diffusion::Antuono => {
+            -0.5 * (0..D)
+                .map(|a| (slopes[i][a] + slopes[j][a]) * d[a])
+                .sum::<f64>()
+        }
+        Diffusion::Fourtakas {
+            gravity,
+            reference_density,
+            gamma,
+        } => {
             let deeper = -(0..D).map(|a| gravity[a] * d[a]).sum::<f64>();
             let ratio = gamma * deeper / (sound_speed * sound_speed);
             reference_density * (ratio.max(-1.0).ln_1p() / gamma).exp_m1()

@@ -27,14 +27,22 @@ pub fn free_surface<const D: usize>(cloud: &Cloud<D>) -> FreeSurface<D> {
     let normal = cloud.map(|i| {
         let length = norm(&slopes[i]);
         // Round-off of a uniform field has a direction too.
-        if length * cloud.h < 1e-9 { [0.0; D] } else { slopes[i].map(|s| -s / length) }
+        if length * cloud.h < 1e-9 {
+            [0.0; D]
+        } else {
+            slopes[i].map(|s| -s / length)
+        }
     });
     let on = cloud.map(|i| match eigenvalue[i] {
         sparse if sparse < SPARSE => true,
         dense if dense > DENSE => false,
         _ => !cone_is_occupied(cloud, i, &normal[i]),
     });
-    FreeSurface { eigenvalue, normal, on }
+    FreeSurface {
+        eigenvalue,
+        normal,
+        on,
+    }
 }
 
 /// Whether a neighbour lies in the umbrella above the particle: a cone of 45 degrees out to `√2 h`, capped by a ball

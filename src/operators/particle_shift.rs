@@ -36,7 +36,10 @@ pub fn particle_shift<const D: usize>(
     let (scale, limit) = match form {
         Shift::Sun { time_step, speed } => {
             let reach = 2.0 * cloud.h;
-            (time_step * speed * reach * reach / (2.0 * spacing), 0.5 * speed * time_step)
+            (
+                time_step * speed * reach * reach / (2.0 * spacing),
+                0.5 * speed * time_step,
+            )
         }
         Shift::Lind => (0.5 * cloud.h * cloud.h, 0.2 * cloud.h),
     };
@@ -55,7 +58,11 @@ pub fn particle_shift<const D: usize>(
         });
         let step = sum.map(|s| -scale * s);
         let length = norm(&step);
-        if length > limit { step.map(|s| s * (limit / length)) } else { step }
+        if length > limit {
+            step.map(|s| s * (limit / length))
+        } else {
+            step
+        }
     });
     if surface {
         keep_to_surface(cloud, &mut shift);
@@ -66,20 +73,24 @@ pub fn particle_shift<const D: usize>(
 /// Takes out what would push particles through the free surface.
 fn keep_to_surface<const D: usize>(cloud: &Cloud<D>, shift: &mut [[f64; D]]) {
     let surface = free_surface(cloud);
-    shift.par_iter_mut().enumerate().with_min_len(256).for_each(|(i, shift)| {
-        let mut near = surface.on[i];
-        cloud.for_each_neighbour(i, |j, _, _, _| near |= surface.on[j]);
-        if !near {
-            return;
-        }
-        if surface.eigenvalue[i] < FREE {
-            *shift = [0.0; D];
-            return;
-        }
-        let normal = &surface.normal[i];
-        let through: f64 = (0..D).map(|a| normal[a] * shift[a]).sum();
-        for a in 0..D {
-            shift[a] -= through * normal[a];
-        }
-    });
+    shift
+        .par_iter_mut()
+        .enumerate()
+        .with_min_len(256)
+        .for_each(|(i, shift)| {
+            let mut near = surface.on[i];
+            cloud.for_each_neighbour(i, |j, _, _, _| near |= surface.on[j]);
+            if !near {
+                return;
+            }
+            if surface.eigenvalue[i] < FREE {
+                *shift = [0.0; D];
+                return;
+            }
+            let normal = &surface.normal[i];
+            let through: f64 = (0..D).map(|a| normal[a] * shift[a]).sum();
+            for a in 0..D {
+                shift[a] -= through * normal[a];
+            }
+        });
 }

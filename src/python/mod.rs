@@ -1,0 +1,13 @@
+//! The extension module `kolk._core`: thin bindings, one file per thing. Everything under this folder needs the cargo
+//! feature `python`; nothing outside it knows Python.
+
+mod arrays;
+
+use pyo3::prelude::*;
+
+/// The engine of kolk.
+#[pymodule]
+fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    arrays::register(module)
+}
