@@ -16,7 +16,19 @@ from matplotlib.colors import Normalize
 from matplotlib.image import imread
 
 from kolk import cases, references, render
-from kolk.render import curves, film, flow, plane, quantity, raster, space, splat, style, surface
+from kolk.render import (
+    curves,
+    exact,
+    film,
+    flow,
+    plane,
+    quantity,
+    raster,
+    space,
+    splat,
+    style,
+    surface,
+)
 from kolk.render.camera import look_at
 
 SPACING = 0.02
@@ -126,6 +138,32 @@ def test_ranges_and_labels(frames: list[MadeFrame]) -> None:
     assert "2.86" in quantity.time_label(0.5, scales)
     assert quantity.spread(frames, 4) == [1, 2, 3, 4]
     assert quantity.spread(frames[:2], 4) == [0, 1]
+
+
+def test_units_suit_the_values() -> None:
+    def slow(size: float) -> MadeFrame:
+        x = lattice((0.0, 0.2), (0.0, 0.2))
+        velocity = np.full((len(x), 2), size)
+        return MadeFrame(
+            0.0, x, len(x), {"velocity": velocity, "pressure": size * 10 + x[:, 0] * 0}
+        )
+
+    labels = [quantity.quantity("speed", None, [slow(u)]).label for u in (0.0, 2e-5, 0.2, 3.0)]
+    assert labels == ["speed [m/s]", "speed [µm/s]", "speed [m/s]", "speed [m/s]"]
+    labels = [quantity.quantity("pressure", None, [slow(u)]).label for u in (1e-3, 3.0, 500.0)]
+    assert labels == ["pressure [mPa]", "pressure [Pa]", "pressure [kPa]"]
+
+
+@pytest.mark.parametrize("name", ["poiseuille", "still-water", "taylor-green"])
+def test_exact_solutions_are_drawn(tmp_path: Path, name: str) -> None:
+    (asked,) = cases.get(name).comparisons
+    given = asked.parameters
+    side = given.get("width", given.get("surface", given.get("length")))
+    x = np.random.default_rng(5).random((300, 2)) * side
+    still = {"velocity": np.ones((300, 2)), "pressure": np.zeros(300)}
+    frames = [MadeFrame(t, x, 300, still) for t in (0.0, 0.1, 0.2)]
+    path = exact.exact_picture(frames, asked, tmp_path / "exact.png", name)
+    assert imread(path).shape[0] > 300
 
 
 def test_sheet_and_frame(tmp_path: Path, frames: list[MadeFrame]) -> None:

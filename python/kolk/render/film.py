@@ -57,8 +57,8 @@ def flow_film(
 
     The surroundings are drawn once; each frame only replaces the picture and the time.
     """
-    shown = quantity(field, scales)
     sample = [frames[i] for i in spread(frames, 8)]
+    shown = quantity(field, scales, sample)
     area = extent(sample, spacing)
     scale = colour_range(shown, sample)
     with style.look():

@@ -34,7 +34,7 @@ def frame_picture(
     width: float = 8.0,
 ) -> Path:
     """One field of one frame as a PNG. ``spacing`` in m, ``width`` in inches."""
-    shown = quantity(field, scales)
+    shown = quantity(field, scales, [frame])
     area = area or extent([frame], spacing)
     with style.look():
         scale = shown_range or colour_range(shown, [frame])
@@ -82,9 +82,9 @@ def flow_sheet(
     """
     chosen = [frames[i] for i in spread(frames, count)]
     area = extent(chosen, spacing)
-    shown = [quantity(name, scales) for name in fields]
+    shown = [quantity(name, scales, chosen) for name in fields]
     ranges = [colour_range(each, chosen) for each in shown]
-    wide = area.aspect >= 1.3
+    wide = area.aspect >= 1.8
     columns, rows = (len(fields), len(chosen)) if wide else (len(chosen), len(fields))
     inner = 5.2 if wide else min(2.9, 4.4 * area.aspect)
     tall = inner / area.aspect
@@ -134,7 +134,15 @@ def _dress(axes: Axes, area: Extent, *, left: bool = True, bottom: bool = True) 
     style.bare(axes)
     axes.set_xlim(area.left, area.right)
     axes.set_ylim(area.bottom, area.top)
-    axes.locator_params(nbins=6)
+    across = axes.get_position().width * axes.figure.bbox.width / axes.figure.dpi
+    axes.locator_params(axis="x", nbins=max(min(round(across / 0.55), 6), 2))
+    axes.locator_params(axis="y", nbins=6)
+    # a channel of a millimetre: 10^-3 once at the axis, not in every tick
+    axes.ticklabel_format(style="sci", scilimits=(-2, 4), useMathText=True)
+    for axis in (axes.xaxis, axes.yaxis):
+        axis.get_offset_text().set(fontsize=7.5, color=style.QUIET)
+    axes.xaxis.get_offset_text().set_visible(bottom)
+    axes.yaxis.get_offset_text().set_visible(left)
     axes.tick_params(labelleft=left, labelbottom=bottom)
     if left:
         axes.set_ylabel("y [m]")

@@ -58,8 +58,30 @@ class Quantity:
         return x, value / self.unit
 
 
-def quantity(name: str, scales: Scales | None = None) -> Quantity:
-    """``speed``, ``pressure`` or ``density``; dimensionless where the case has scales."""
+_PREFIXES = (("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6))
+
+
+def quantity(name: str, scales: Scales | None = None, sample: Iterable[FrameLike] = ()) -> Quantity:
+    """``speed``, ``pressure`` or ``density``; dimensionless where the case has scales.
+
+    Otherwise in the SI unit whose prefix suits the largest values of the frames in ``sample``.
+    """
+    plain = _quantity(name, scales)
+    if scales or name not in {"speed", "pressure"}:
+        return plain
+    peaks = [
+        float(np.percentile(np.abs(v), 99.5)) for v in (plain.of(f)[1] for f in sample) if len(v)
+    ]
+    top = max(peaks, default=1.0) * plain.unit
+    allowed = _PREFIXES if name == "pressure" else _PREFIXES[1:]
+    prefix, unit = next((p for p in allowed if top >= p[1]), ("", 1.0) if top == 0 else allowed[-1])
+    # 0.3 m/s reads better than 300 mm/s
+    if name == "speed" and unit == 1e-3 and top >= 0.05:
+        prefix, unit = "", 1.0
+    return Quantity(name, f"{name} [{prefix}{'m/s' if name == 'speed' else 'Pa'}]", unit)
+
+
+def _quantity(name: str, scales: Scales | None) -> Quantity:
     if name == "speed":
         if scales:
             return Quantity(name, r"speed / $\sqrt{gH}$", scales.speed)
@@ -67,7 +89,7 @@ def quantity(name: str, scales: Scales | None = None) -> Quantity:
     if name == "pressure":
         if scales:
             return Quantity(name, r"pressure / $\rho g H$", scales.pressure)
-        return Quantity(name, "pressure [kPa]", 1000.0)
+        return Quantity(name, "pressure [Pa]", 1.0)
     return Quantity(name, f"{name} [kg/m³]" if name == "density" else name, 1.0)
 
 

@@ -157,7 +157,7 @@ def space_sheet(
     """The flow at ``count`` times, two in a row. ``surface`` False draws particles at once."""
     chosen = [frames[i] for i in spread(frames, count)]
     scene = room([frames[0], *chosen], spacing, vertical)
-    shown = quantity(field, scales)
+    shown = quantity(field, scales, chosen)
     scale = colour_range(shown, chosen)
     columns = 2 if len(chosen) > 1 else 1
     rows = -(-len(chosen) // columns)
@@ -201,7 +201,7 @@ def space_film(
     chosen = [frames[i] for i in spread(frames, MOST_FRAMES)]
     sample = [frames[i] for i in spread(frames, 4)]
     scene = room([frames[0], *sample], spacing, vertical)
-    shown = quantity(field, scales)
+    shown = quantity(field, scales, sample)
     scale = colour_range(shown, sample)
     with style.look():
         made, axes = _film_figure(scene, shown, scale, title)

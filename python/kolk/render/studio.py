@@ -6,16 +6,19 @@ import sys
 import time as clock
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from kolk.compare import common_shift, records
 from kolk.compare.records import RunLike
 
-from . import curves, flow, space
+from . import curves, exact, flow, space
 from .film import film_path, flow_film
 from .quantity import Scales
+
+if TYPE_CHECKING:
+    from kolk.cases import Comparison
 
 PATIENCE = 2.0
 """Seconds before a progress bar appears."""
@@ -45,7 +48,7 @@ class Studio:
         """Draws all; returns the files in the order they were made."""
         self.folder.mkdir(parents=True, exist_ok=True)
         made: list[Path] = []
-        jobs = [*self._sheets(), *self._fields(), *self._probes()]
+        jobs = [*self._sheets(), *self._exact(), *self._fields(), *self._probes()]
         frames = len(self.run.frames) if film else 0
         filmed = frames if self.flat else space.film_frames(frames)
         with Bar(len(jobs) + filmed, self.quiet) as bar:
@@ -90,6 +93,15 @@ class Studio:
                 )
             )
         return jobs
+
+    def _exact(self) -> list[Callable[[], Path]]:
+        def job(asked: Comparison) -> Callable[[], Path]:
+            name = asked.reference.replace("_", "-")
+            path = self.folder / f"exact-{name}.png"
+            return lambda: exact.exact_picture(self.run.frames, asked, path, self.title)
+
+        wanted = [c for c in self.asked if c.reference in exact.DRAWN and c.kind == "analytic"]
+        return [job(asked) for asked in wanted if len(self.run.frames) > 1]
 
     def _fields(self) -> list[Callable[[], Path]]:
         if not self.flat or not len(self.run.frames):
