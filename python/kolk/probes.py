@@ -160,8 +160,8 @@ class WallPressure:
 def wall_normal(point: Floats, around: Surroundings) -> Floats | None:
     """Unit normal (D,) of the wall at a point on it, into the fluid; None where no wall is near.
 
-    An axis where the wall lies half a spacing behind the point and none half a spacing before it;
-    on an inclined wall the direction away from the wall particles nearby.
+    The axis along which the way out of the wall is clearest; where two are as good as each other,
+    as on an inclined wall, the direction away from the wall particles nearby.
     """
     s = around.spacing
     if not len(around.wall) or around.wall_distance(point[None, :])[0] > 1.5 * s:
@@ -170,8 +170,9 @@ def wall_normal(point: Floats, around: Surroundings) -> Floats | None:
     before = np.minimum(around.wall_distance(point + 0.5 * s * axes), 2.0 * s)
     behind = around.wall_distance(point - 0.5 * s * axes)
     gain = before - behind
-    if gain.max() > 0.6 * s:
-        return np.asarray(axes[int(np.argmax(gain))])
+    second, best = np.argsort(gain)[-2:]
+    if gain[best] > 0.3 * s and gain[best] - gain[second] > 0.2 * s:
+        return np.asarray(axes[best])
     offset = point - around.wall
     near = np.linalg.norm(offset, axis=1) < 2.0 * s
     mean = offset[near].mean(axis=0)

@@ -37,7 +37,8 @@ class BodyFrame:
     """One body in one frame: NumPy arrays in the stable order of its particles.
 
     position (n, D), m, float32 where that resolves a ten-thousandth of the spacing, else float64;
-    velocity (n, D), density, pressure (n,) float32, SI; mass (n,) float64, kg. A field that the scene's `output.fields` left out raises `KeyError`.
+    velocity (n, D), density, pressure (n,) float32, SI; mass (n,) float64, kg. A field that the
+    scene's `output.fields` left out raises `KeyError`.
     """
 
     def __init__(self, frame: Frame, body: BodyRange) -> None:
@@ -281,7 +282,7 @@ class Run:
 
     @cached_property
     def history(self) -> pd.DataFrame:
-        """Energy, extremes and time step at each frame; see `kolk.output.history`."""
+        """Energy, extremes and time step at each frame; see `kolk.output.recorder`."""
         return read_table(self._files.history)
 
     @property

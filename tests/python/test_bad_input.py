@@ -193,10 +193,7 @@ def test_a_damaged_checkpoint(tank: Path, capfd: pytest.CaptureFixture[str]) -> 
         main(["run", "tank.toml", "--out", "here", "--quiet"])
     assert end.value.code == 0
     (folder / "checkpoint.h5").write_bytes(b"torn")
-    assert_refused(
-        ["run", "tank.toml", "--out", "here", "--resume"],
-        ["checkpoint.h5", "cannot be read"],
-        capfd,
-    )
+    resume = ["run", "tank.toml", "--out", "here", "--resume"]
+    assert_refused(resume, ["checkpoint.h5", "cannot be read"], capfd)
     (folder / "checkpoint.h5").unlink()
-    assert_refused(["run", "tank.toml", "--out", "here", "--resume"], ["nothing to resume"], capfd)
+    assert_refused(resume, ["nothing to resume"], capfd)

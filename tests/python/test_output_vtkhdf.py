@@ -1,4 +1,4 @@
-"""The time series: its frames come back, VTK reads them, and no moment is a bad one to be killed."""
+"""The time series: its frames come back, VTK reads them, no moment is a bad one to be killed."""
 
 import errno
 import os

@@ -329,5 +329,5 @@ def test_the_schedule_ends_on_time(until: float, every: float, times: list[float
 
 
 def test_folders_that_are_no_runs_are_refused(tmp_path: Path) -> None:
-    with pytest.raises(RunError, match="no scene.toml"):
+    with pytest.raises(RunError, match=r"no scene\.toml"):
         kolk.open_run(tmp_path)
