@@ -231,7 +231,7 @@ def test_expressions(text: str, expected: float) -> None:
     ],
 )
 def test_expressions_hold_nothing_but_arithmetic(text: str) -> None:
-    with pytest.raises(ValueError, match="allowed are|takes"):
+    with pytest.raises(ValueError, match=r"allowed are|takes"):
         Expression(text)
 
 

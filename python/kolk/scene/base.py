@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import (
+    AfterValidator,
     BaseModel,
     BeforeValidator,
     ConfigDict,
@@ -33,8 +34,26 @@ def _plain_list(value: Any) -> Any:
     return value.tolist() if isinstance(value, np.ndarray) else value
 
 
+LARGEST = 1e60
+"""Numbers beyond it are slips, and those nearer to zero than its inverse are zero: the cube of
+either would leave the range of f64."""
+
+
+def within_range(value: float) -> float:
+    """``value``, or 0 where it is next to nothing. Raises ValueError beyond LARGEST."""
+    if not abs(value) <= LARGEST:
+        raise ValueError(f"found {value:g}, must not exceed {LARGEST:g}")
+    return value if abs(value) >= 1.0 / LARGEST else 0.0
+
+
 # Strict: a number in quotes or a bool is a mistake, not a number.
-Real = Annotated[float, Strict(), Field(allow_inf_nan=False), BeforeValidator(_plain_number)]
+Real = Annotated[
+    float,
+    Strict(),
+    Field(allow_inf_nan=False),
+    BeforeValidator(_plain_number),
+    AfterValidator(within_range),
+]
 Positive = Annotated[Real, Field(gt=0)]
 NotNegative = Annotated[Real, Field(ge=0)]
 Whole = Annotated[int, Strict(), BeforeValidator(_plain_number)]

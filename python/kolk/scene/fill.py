@@ -16,6 +16,7 @@ import numpy.typing as npt
 from kolk.errors import Problem, SceneError
 
 from . import material
+from .base import LARGEST
 from .expression import Expression
 from .memory import check_memory
 from .model import Scene
@@ -177,8 +178,10 @@ def _values(
             path,
             f"gave an array of shape {value.shape} for {len(position)} positions, must be {shape}",
         )
-    if not np.isfinite(value).all():
-        i = int(np.argmin(np.isfinite(value).reshape(len(value), -1).all(axis=1)))
+    # Not a number fails the comparison, too.
+    sane = np.abs(value) <= LARGEST
+    if not sane.all():
+        i = int(np.argmin(sane.reshape(len(value), -1).all(axis=1)))
         raise _error(path, f"is not finite at {position[i].tolist()}: found {value[i]}")
     return value
 

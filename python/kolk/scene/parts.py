@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Annotated, Any, Literal
@@ -26,6 +25,7 @@ from .base import (
     Vector,
     Whole,
     shown,
+    within_range,
 )
 from .composed import ShapeTable
 from .expression import Expression
@@ -40,10 +40,9 @@ def _number(value: Any) -> float | None:
     if not isinstance(value, (int, float)) or isinstance(value, bool):
         return None
     try:
-        number = float(value)
-    except OverflowError:
+        return within_range(float(value))
+    except (OverflowError, ValueError):
         return None
-    return number if math.isfinite(number) else None
 
 
 def _sound_speed(value: Any) -> Any:

@@ -16,7 +16,7 @@ from pydantic import Field, model_validator
 from kolk.errors import Problem, SceneError
 
 from . import distance
-from .base import Model, Positive, Vector
+from .base import Model, Positive, Real, Vector
 
 FloatArray = npt.NDArray[np.float64]
 Bounds = tuple[FloatArray, FloatArray]
@@ -265,8 +265,8 @@ class Polygon(Shape):
     """A polygon; in 3D with ``from`` and ``to``: the prism over it along the z axis."""
 
     points: tuple[Vector, ...] = Field(min_length=3, description="corners [x, y] in order, m")
-    from_: float | None = Field(default=None, alias="from", description="lowest z of a prism, m")
-    to: float | None = Field(default=None, description="highest z of a prism, m")
+    from_: Real | None = Field(default=None, alias="from", description="lowest z of a prism, m")
+    to: Real | None = Field(default=None, description="highest z of a prism, m")
 
     @model_validator(mode="after")
     def _simple(self) -> Polygon:
