@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from kolk.errors import InstabilityError, KolkError, RunError
 from kolk.interrupts import Interrupts
 from kolk.output.atomic import storage_error, write_json
-from kolk.output.checkpoint import read_checkpoint
+from kolk.output.checkpoint import Checkpoint
 from kolk.output.folder import RunFolder
 from kolk.output.journal import Journal
 from kolk.output.recorder import Recorder, Stopwatch
@@ -41,13 +41,22 @@ class RunStopped(RunError):
 
 
 class RunInterrupted(KeyboardInterrupt):
-    """A run ended by Ctrl-C (or SIGTERM) with its state saved: `run(..., resume=True)` goes on."""
+    """A run ended by Ctrl-C (or SIGTERM); nothing is lost.
 
-    def __init__(self, folder: Path, time: float, steps: int) -> None:
-        super().__init__(
-            f"interrupted at t = {time:g} s after {steps:,} steps; the state is saved in {folder}"
-        )
-        self.folder, self.time, self.steps = folder, time, steps
+    finished: whether the run itself was done, and only its pictures were on their way; otherwise
+    its state is saved and `run(..., resume=True)` goes on. time: reached, s.
+    """
+
+    def __init__(self, folder: Path, time: float, steps: int, *, finished: bool = False) -> None:
+        if finished:
+            message = f"the run is done and in {folder}; its pictures were interrupted"
+        else:
+            message = (
+                f"interrupted at t = {time:g} s after {steps:,} steps; "
+                f"the state is saved in {folder}"
+            )
+        super().__init__(message)
+        self.folder, self.time, self.steps, self.finished = folder, time, steps, finished
 
 
 @dataclass(frozen=True)
@@ -95,13 +104,17 @@ class Execution:
         self._target = math.inf
         """The frame that the engine is on its way to, s; infinite when it is written."""
 
-    def carry_out(self, *, resume: bool) -> None:
-        """Runs to the end of the scene, or raises after saving what there is."""
-        self._log = Journal(self.folder.log, fresh=not resume)
+    def carry_out(self, checkpoint: Checkpoint | None) -> None:
+        """Runs to the end of the scene, from a checkpoint or from the start.
+
+        What ends it early is raised again after everything is saved; a run that could not even
+        begin leaves nothing behind.
+        """
         begun = False
+        self._log = Journal(self.folder.log, fresh=checkpoint is None)
         try:
-            if resume:
-                self._go_on()
+            if checkpoint is not None:
+                self._go_on(checkpoint)
             else:
                 self._start()
             begun = True
@@ -130,10 +143,23 @@ class Execution:
                 self._write_summary(strict=self.outcome == "done")
             self._log.write(f"{self.outcome} at t = {self.simulation.time:g} s. {self.reason}")
             self._log.close()
+            if not begun and checkpoint is None:
+                self.folder.discard()
 
     def look_back(self, *, pictures: bool) -> None:
         """Sets the finished run beside its references and draws it; neither can fail it."""
         self._log = Journal(self.folder.log, fresh=False)
+        try:
+            self._look_back(pictures)
+        except KeyboardInterrupt:
+            self.notes.append("the pictures were interrupted")
+            self._write_summary(strict=False)
+            steps, now = self.simulation.step_count, self.simulation.time
+            raise RunInterrupted(self.folder.path, now, steps, finished=True) from None
+        finally:
+            self._log.close()
+
+    def _look_back(self, pictures: bool) -> None:
         result = Run(self.folder.path)
         with self.watch.phase("comparison"):
             self._attempt("comparison with the reference", lambda: self._compare(result))
@@ -144,7 +170,6 @@ class Execution:
             with self.watch.phase("pictures"):
                 self._attempt("pictures", lambda: self._draw(result))
         self._write_summary(strict=True)
-        self._log.close()
 
     def _start(self) -> None:
         write_scene(self.scene, self.folder)
@@ -158,8 +183,7 @@ class Execution:
         self.recorder.begin()
         self._checkpoint()
 
-    def _go_on(self) -> None:
-        checkpoint = read_checkpoint(self.folder.checkpoint)
+    def _go_on(self, checkpoint: Checkpoint) -> None:
         if checkpoint.scene != self.recorder.fingerprint:
             raise RunError(
                 f"the run in {self.folder} is of another scene, precision or set of probes than "
@@ -218,6 +242,7 @@ class Execution:
     def _checkpoint(self) -> None:
         self.recorder.checkpoint(
             {
+                "precision": self.simulation.precision,
                 "seconds": self._seconds(),
                 "watch": self.watch.phases,
                 "timings": self._timings(),
@@ -285,7 +310,8 @@ class Execution:
                 reason=self.reason,
                 initial_energy=self._initial_energy,
                 seconds=self._seconds(),
-                phases={**self._timings(), **self.watch.phases},
+                engine=self._timings(),
+                outside=self.watch.phases,
                 limits=self._limits(),
             ),
             "references": self.references,

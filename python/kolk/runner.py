@@ -9,10 +9,11 @@ the same scene gives the same bits with and without probes, interrupted and resu
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 from kolk.errors import RunError
 from kolk.execution import Execution, RunInterrupted, RunStopped, Schedule
+from kolk.output.checkpoint import read_checkpoint
 from kolk.output.folder import RunFolder, free_folder, newest_folder
 from kolk.output.recorder import Recorder, Stopwatch
 from kolk.probes import build_probes
@@ -29,7 +30,7 @@ def run(
     scene: Scene | str | Path,
     out: str | Path | None = None,
     *,
-    precision: Precision = DEFAULT_PRECISION,
+    precision: Precision | None = None,
     threads: int = 0,
     resume: bool = False,
     force: bool = False,
@@ -41,8 +42,8 @@ def run(
     scene: a scene, the name of a built-in one, or a file. out: the run's folder; without it
     `runs/NAME`, or the first free of `runs/NAME-2`, ... (with `resume` the newest of them). A
     folder that holds a run is refused unless `resume` goes on with it, to the same bits as if it
-    had never stopped, or `force` starts over. precision, threads: see `Simulation`. quiet: no
-    progress. pictures: overrides the scene's `output.pictures`.
+    had never stopped, or `force` starts over. precision, threads: see `Simulation`; a resumed run
+    keeps its precision. quiet: no progress. pictures: overrides the scene's `output.pictures`.
 
     Raises `SceneError`; `RunError` where it cannot begin; `RunStopped` (a `RunError`) for a full
     disk and the like on the way; `InstabilityError`; `RunInterrupted` (a `KeyboardInterrupt`). In
@@ -54,21 +55,25 @@ def run(
         scene = load(scene)
     if resume and force:
         raise RunError("resume and force exclude each other: go on with a run, or start it over")
+    folder = _folder_to_resume(scene, out) if resume else None
+    checkpoint = read_checkpoint(folder.checkpoint) if folder is not None else None
+    if precision is None:
+        kept = checkpoint.book["precision"] if checkpoint is not None else DEFAULT_PRECISION
+        precision = cast("Precision", kept)
     watch = Stopwatch()
     with watch.phase("set-up"):
         simulation = Simulation(scene, precision=precision, threads=threads)
         probes = build_probes(scene, simulation)
-    schedule = Schedule(scene.until, float(scene.output.every or scene.until))
-    if resume:
-        folder = _folder_to_resume(scene, out)
+    if folder is not None:
         folder.lock()
     else:
         folder = RunFolder(out) if out is not None else free_folder(scene.name)
         folder.claim(force=force)
+    schedule = Schedule(scene.until, float(scene.output.every or scene.until))
     try:
         recorder = Recorder(simulation, folder, probes, scene.output.fields, schedule.frames, watch)
         execution = Execution(scene, simulation, folder, recorder, schedule, watch, quiet)
-        execution.carry_out(resume=resume)
+        execution.carry_out(checkpoint)
         wanted = scene.output.pictures if pictures is None else pictures
         execution.look_back(pictures=wanted)
     finally:

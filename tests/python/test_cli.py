@@ -222,3 +222,27 @@ def test_the_command_starts_fast_enough_to_answer() -> None:
     found = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
     loaded = set(found.stdout.split())
     assert not loaded & {"pandas", "matplotlib", "pyvista", "scipy", "h5py", "pydantic"}
+
+
+def test_ctrl_c_while_pictures_are_made_keeps_the_run(
+    tank: Path,
+    command: Command,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    import kolk.render
+
+    def pressed(*_: object, **__: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(kolk.render, "render_run", pressed)
+    ended = command("run", "tank.toml", "--pictures")
+    assert ended.status == 130
+    assert "the run is done" in ended.err
+    assert "kolk render runs/tank" in ended.err
+    assert kolk.open_run("runs/tank").outcome == "done"
+
+
+def test_a_resumed_run_keeps_its_precision(tank: Path, command: Command) -> None:
+    assert command("run", "tank.toml", "--precision", "mixed", "--quiet").status == 0
+    assert command("run", "runs/tank", "--resume", "--until", "0.12", "--quiet").status == 0
+    assert kolk.open_run("runs/tank").summary["scene"]["precision"] == "mixed"

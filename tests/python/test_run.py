@@ -218,6 +218,7 @@ def test_another_scene_is_not_resumed(tank: Path) -> None:
             kolk.run(other, resume=True, quiet=True)
     with pytest.raises(RunError, match="another scene, precision"):
         kolk.run(scene, resume=True, precision="mixed", quiet=True)
+    assert kolk.open_run("runs/tank").outcome == "done"
 
 
 def test_a_second_run_takes_a_folder_of_its_own(tank: Path) -> None:
@@ -260,6 +261,7 @@ def test_a_full_disk_at_the_start_is_found_before_anything_runs(
     with pytest.raises(RunError, match="No space left") as caught:
         kolk.run("tank.toml", quiet=True)
     assert not isinstance(caught.value, kolk.RunStopped)
+    assert not Path("runs/tank").exists()
 
 
 def test_an_unstable_run_says_so_and_keeps_its_frames(

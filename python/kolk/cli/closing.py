@@ -32,8 +32,8 @@ def outcome(summary: dict[str, Any]) -> str:
         f"{scene['title'] or scene['name']}: {summary['outcome']} at t = "
         f"{summary['time']['reached']:g} s",
         f"{summary['particles']['total']:,} particles, {steps['total']:,} steps in "
-        f"{duration(seconds)}: {summary['particle_steps_per_second'] / 1e6:.2f} million "
-        f"particle-steps/s ({scene['precision']}, {scene['threads']} threads)",
+        f"{duration(seconds)}; {summary['particle_steps_per_second'] / 1e6:.2f} million "
+        f"particle-steps/s in the engine ({scene['precision']}, {scene['threads']} threads)",
     ]
     stability = summary["stability"]
     if stability["mach_left_range"]:

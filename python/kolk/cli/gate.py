@@ -12,6 +12,7 @@ from __future__ import annotations
 
 import functools
 import os
+import shlex
 import sys
 import traceback
 from collections.abc import Callable, Sequence
@@ -67,7 +68,9 @@ def explain(error: BaseException) -> tuple[int, str]:
     from kolk.execution import RunInterrupted, RunStopped
 
     if isinstance(error, RunInterrupted):
-        return INTERRUPTED, f"{error}; to go on:  kolk run {_quoted(str(error.folder))} --resume"
+        folder = shlex.quote(str(error.folder))
+        again = f"render {folder}" if error.finished else f"run {folder} --resume"
+        return INTERRUPTED, f"{error}; to go on:  kolk {again}"
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "interrupted before the run began; nothing was saved"
     if isinstance(error, (InstabilityError, RunStopped)):
@@ -80,9 +83,3 @@ def explain(error: BaseException) -> tuple[int, str]:
         f"an error that should not happen ({type(error).__name__}: {error}); "
         "repeat the command with --debug and report what it prints"
     )
-
-
-def _quoted(word: str) -> str:
-    import shlex
-
-    return shlex.quote(word)

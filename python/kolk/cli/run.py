@@ -30,8 +30,13 @@ def run(
     ] = None,
     threads: Annotated[int, typer.Option("--threads", help="0: every core.")] = 0,
     precision: Annotated[
-        str, typer.Option("--precision", help="f64, or mixed: pair arithmetic in f32.")
-    ] = DEFAULT_PRECISION,
+        str | None,
+        typer.Option(
+            "--precision",
+            help="f64, or mixed: pair arithmetic in f32.",
+            show_default=f"{DEFAULT_PRECISION}, or the resumed run's",
+        ),
+    ] = None,
     settings: Settings = None,
     resume: Annotated[
         bool, typer.Option("--resume", help="Go on with the run in the folder.")
@@ -57,7 +62,7 @@ def run(
     finished = runner.run(
         found,
         out,
-        precision=cast("Precision", precision),
+        precision=cast("Precision | None", precision),
         threads=threads,
         resume=resume,
         force=force,

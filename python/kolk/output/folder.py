@@ -94,6 +94,16 @@ class RunFolder:
             os.close(self._lock)
             self._lock = None
 
+    def discard(self) -> None:
+        """Takes back what a run that could not begin has left; best effort."""
+        with contextlib.suppress(OSError, RunError):
+            self._clear()
+            self.log.unlink(missing_ok=True)
+            self.unlock()
+            if self.probes.is_dir():
+                self.probes.rmdir()
+            self.path.rmdir()
+
     def _clear(self) -> None:
         """Removes a former run's files, and nothing else."""
         files = [

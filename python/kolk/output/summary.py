@@ -119,17 +119,20 @@ def summary_of(
     reason: str,
     initial_energy: Mapping[str, float],
     seconds: float,
-    phases: Mapping[str, Mapping[str, float]],
+    engine: Mapping[str, Mapping[str, float]],
+    outside: Mapping[str, Mapping[str, float]],
     limits: Mapping[str, int],
 ) -> dict[str, Any]:
     """Everything that the summary says without looking at references.
 
-    seconds, phases, limits: over all sittings of a resumed run.
+    seconds, limits, and the time by phase in the engine and outside it: over all sittings of a
+    resumed run.
     """
     scene = simulation.scene
     now = simulation.diagnostics
     steps, counts = simulation.step_count, simulation.particles
     total = sum(counts.values())
+    working = sum(entry["seconds"] for entry in engine.values())
     return {
         "kolk": version(),
         "outcome": outcome,
@@ -151,8 +154,9 @@ def summary_of(
             "by_limit": limits,
             "mean_time_step": simulation.time / steps if steps else None,
         },
-        "seconds": {"total": seconds, "phases": phases},
-        "particle_steps_per_second": steps * total / max(seconds, 1e-9),
+        "seconds": {"total": seconds, "engine": working, "phases": {**engine, **outside}},
+        # The engine's own speed, with what is written and measured meanwhile left out.
+        "particle_steps_per_second": steps * total / max(working, 1e-9),
         "memory": simulation.memory,
         "energy": energy_budget(initial_energy, now),
         "momentum": now["momentum"],
