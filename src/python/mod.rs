@@ -2,6 +2,7 @@
 //! feature `python`; nothing outside it knows Python.
 
 mod arrays;
+mod simulation;
 
 use pyo3::prelude::*;
 
@@ -9,5 +10,6 @@ use pyo3::prelude::*;
 #[pymodule]
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<simulation::PySimulation>()?;
     arrays::register(module)
 }

@@ -210,7 +210,9 @@ impl<T: Real, const N: usize> Lanes for Array<T, N> {
     }
     #[inline(always)]
     fn select(self, mask: [bool; N], other: Self) -> Self {
-        Array(std::array::from_fn(|k| if mask[k] { self.0[k] } else { other.0[k] }))
+        Array(std::array::from_fn(|k| {
+            if mask[k] { self.0[k] } else { other.0[k] }
+        }))
     }
     #[inline(always)]
     fn sum(self) -> T {

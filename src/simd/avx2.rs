@@ -184,14 +184,48 @@ macro_rules! lanes {
 }
 
 lanes!(
-    F32x8, f32, __m256, 8, _mm256_add_ps, _mm256_sub_ps, _mm256_mul_ps, _mm256_div_ps, _mm256_fmadd_ps,
-    _mm256_min_ps, _mm256_max_ps, _mm256_sqrt_ps, _mm256_setzero_ps, _mm256_set1_ps, _mm256_loadu_ps,
-    _mm256_storeu_ps, _mm256_cmp_ps, _mm256_and_ps, _mm256_blendv_ps, _mm256_movemask_ps
+    F32x8,
+    f32,
+    __m256,
+    8,
+    _mm256_add_ps,
+    _mm256_sub_ps,
+    _mm256_mul_ps,
+    _mm256_div_ps,
+    _mm256_fmadd_ps,
+    _mm256_min_ps,
+    _mm256_max_ps,
+    _mm256_sqrt_ps,
+    _mm256_setzero_ps,
+    _mm256_set1_ps,
+    _mm256_loadu_ps,
+    _mm256_storeu_ps,
+    _mm256_cmp_ps,
+    _mm256_and_ps,
+    _mm256_blendv_ps,
+    _mm256_movemask_ps
 );
 lanes!(
-    F64x4, f64, __m256d, 4, _mm256_add_pd, _mm256_sub_pd, _mm256_mul_pd, _mm256_div_pd, _mm256_fmadd_pd,
-    _mm256_min_pd, _mm256_max_pd, _mm256_sqrt_pd, _mm256_setzero_pd, _mm256_set1_pd, _mm256_loadu_pd,
-    _mm256_storeu_pd, _mm256_cmp_pd, _mm256_and_pd, _mm256_blendv_pd, _mm256_movemask_pd
+    F64x4,
+    f64,
+    __m256d,
+    4,
+    _mm256_add_pd,
+    _mm256_sub_pd,
+    _mm256_mul_pd,
+    _mm256_div_pd,
+    _mm256_fmadd_pd,
+    _mm256_min_pd,
+    _mm256_max_pd,
+    _mm256_sqrt_pd,
+    _mm256_setzero_pd,
+    _mm256_set1_pd,
+    _mm256_loadu_pd,
+    _mm256_storeu_pd,
+    _mm256_cmp_pd,
+    _mm256_and_pd,
+    _mm256_blendv_pd,
+    _mm256_movemask_pd
 );
 
 impl F32x8 {
@@ -217,7 +251,10 @@ impl F32x8 {
     unsafe fn total(self) -> f32 {
         // SAFETY: see the head of the macro.
         unsafe {
-            let s = _mm_add_ps(_mm256_castps256_ps128(self.0), _mm256_extractf128_ps(self.0, 1));
+            let s = _mm_add_ps(
+                _mm256_castps256_ps128(self.0),
+                _mm256_extractf128_ps(self.0, 1),
+            );
             let s = _mm_add_ps(s, _mm_movehl_ps(s, s));
             _mm_cvtss_f32(_mm_add_ss(s, _mm_shuffle_ps(s, s, 1)))
         }
@@ -234,8 +271,13 @@ impl F64x4 {
     unsafe fn compress(self, mask: __m256d) -> __m256d {
         // SAFETY: the mask has 4 bits and the table 16 rows.
         unsafe {
-            let row = COMPRESS_DOUBLE.as_ptr().add(_mm256_movemask_pd(mask) as usize);
-            let words = _mm256_permutevar8x32_epi32(_mm256_castpd_si256(self.0), _mm256_loadu_si256(row.cast()));
+            let row = COMPRESS_DOUBLE
+                .as_ptr()
+                .add(_mm256_movemask_pd(mask) as usize);
+            let words = _mm256_permutevar8x32_epi32(
+                _mm256_castpd_si256(self.0),
+                _mm256_loadu_si256(row.cast()),
+            );
             _mm256_castsi256_pd(words)
         }
     }
@@ -243,7 +285,10 @@ impl F64x4 {
     unsafe fn total(self) -> f64 {
         // SAFETY: see the head of the macro.
         unsafe {
-            let s = _mm_add_pd(_mm256_castpd256_pd128(self.0), _mm256_extractf128_pd(self.0, 1));
+            let s = _mm_add_pd(
+                _mm256_castpd256_pd128(self.0),
+                _mm256_extractf128_pd(self.0, 1),
+            );
             _mm_cvtsd_f64(_mm_add_sd(s, _mm_unpackhi_pd(s, s)))
         }
     }

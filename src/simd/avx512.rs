@@ -60,8 +60,20 @@ macro_rules! operators {
         }
     };
 }
-operators!(F32x16, _mm512_add_ps, _mm512_sub_ps, _mm512_mul_ps, _mm512_setzero_ps);
-operators!(F64x8, _mm512_add_pd, _mm512_sub_pd, _mm512_mul_pd, _mm512_setzero_pd);
+operators!(
+    F32x16,
+    _mm512_add_ps,
+    _mm512_sub_ps,
+    _mm512_mul_ps,
+    _mm512_setzero_ps
+);
+operators!(
+    F64x8,
+    _mm512_add_pd,
+    _mm512_sub_pd,
+    _mm512_mul_pd,
+    _mm512_setzero_pd
+);
 
 impl Lanes for F32x16 {
     type Real = f32;
@@ -118,7 +130,10 @@ impl Lanes for F32x16 {
         // SAFETY: see the head of this file.
         unsafe {
             // s = x y with y ~ 1/√x, then s + ½ y (x - s²); exact zero stays zero through the mask.
-            let y = _mm512_maskz_rsqrt14_ps(_mm512_cmp_ps_mask(self.0, _mm512_setzero_ps(), _CMP_NEQ_OQ), self.0);
+            let y = _mm512_maskz_rsqrt14_ps(
+                _mm512_cmp_ps_mask(self.0, _mm512_setzero_ps(), _CMP_NEQ_OQ),
+                self.0,
+            );
             let s = _mm512_mul_ps(self.0, y);
             let half_y = _mm512_mul_ps(y, _mm512_set1_ps(0.5));
             F32x16(_mm512_fmadd_ps(_mm512_fnmadd_ps(s, s, self.0), half_y, s))
@@ -213,7 +228,8 @@ impl Lanes for F64x8 {
         unsafe {
             let half = _mm512_set1_pd(0.5);
             let x = self.0;
-            let y = _mm512_maskz_rsqrt14_pd(_mm512_cmp_pd_mask(x, _mm512_setzero_pd(), _CMP_NEQ_OQ), x);
+            let y =
+                _mm512_maskz_rsqrt14_pd(_mm512_cmp_pd_mask(x, _mm512_setzero_pd(), _CMP_NEQ_OQ), x);
             // Goldschmidt: s -> √x and d -> ½/√x together, 14 -> 28 -> 53 bits.
             let s = _mm512_mul_pd(x, y);
             let d = _mm512_mul_pd(y, half);

@@ -64,7 +64,10 @@ pub fn level() -> Level {
         _ => {
             let wanted = std::env::var("KOLK_SIMD").ok();
             let levels = available_levels();
-            let chosen = levels.iter().rev().find(|l| wanted.as_deref().is_none_or(|w| w == l.name()));
+            let chosen = levels
+                .iter()
+                .rev()
+                .find(|l| wanted.as_deref().is_none_or(|w| w == l.name()));
             let chosen = *chosen.unwrap_or(&levels[levels.len() - 1]);
             LEVEL.store(chosen as u8, Ordering::Relaxed);
             chosen
@@ -74,7 +77,10 @@ pub fn level() -> Level {
 
 /// Uses `level`, or the widest available below it: for tests and benchmarks.
 pub fn force_level(level: Level) {
-    let best = available_levels().into_iter().rfind(|&l| l <= level).unwrap_or(Level::Baseline);
+    let best = available_levels()
+        .into_iter()
+        .rfind(|&l| l <= level)
+        .unwrap_or(Level::Baseline);
     LEVEL.store(best as u8, Ordering::Relaxed);
 }
 

@@ -22,7 +22,12 @@ impl<R: Real> Task<R> for Operations<R> {
                         let w = want(x[l]);
                         let bound = eps * if w < R::default() { -w } else { w };
                         let d = out[l] - w;
-                        assert!(d <= bound && -d <= bound, "{:?}: {:?} instead of {w:?}", x[l], out[l]);
+                        assert!(
+                            d <= bound && -d <= bound,
+                            "{:?}: {:?} instead of {w:?}",
+                            x[l],
+                            out[l]
+                        );
                     }
                 };
                 let one = R::from_f64(1.0);
@@ -32,10 +37,34 @@ impl<R: Real> Task<R> for Operations<R> {
                 close(-v, &|a| -a, &mut out);
                 let half = L::constant(0.5);
                 let mask = v.less(half);
-                close(v.only(mask), &|a| if a < R::from_f64(0.5) { a } else { R::default() }, &mut out);
-                close(v.select(mask, half), &|a| if a < R::from_f64(0.5) { a } else { R::from_f64(0.5) }, &mut out);
+                close(
+                    v.only(mask),
+                    &|a| {
+                        if a < R::from_f64(0.5) {
+                            a
+                        } else {
+                            R::default()
+                        }
+                    },
+                    &mut out,
+                );
+                close(
+                    v.select(mask, half),
+                    &|a| {
+                        if a < R::from_f64(0.5) {
+                            a
+                        } else {
+                            R::from_f64(0.5)
+                        }
+                    },
+                    &mut out,
+                );
                 v.compress_store(mask, out.as_mut_ptr());
-                let chosen: Vec<R> = x[..L::N].iter().copied().filter(|&a| a < R::from_f64(0.5)).collect();
+                let chosen: Vec<R> = x[..L::N]
+                    .iter()
+                    .copied()
+                    .filter(|&a| a < R::from_f64(0.5))
+                    .collect();
                 assert_eq!(L::count(mask), chosen.len());
                 assert_eq!(&out[..chosen.len()], &chosen[..]);
                 let total: R = x[..L::N].iter().copied().sum();
@@ -57,7 +86,9 @@ impl<R: Real> Task<R> for Operations<R> {
 
 #[test]
 fn every_level_computes_like_plain_numbers() {
-    let x: Vec<f64> = (0..640).map(|k| 1e-6 + ((k * 7919 % 641) as f64 / 641.0).powi(2)).collect();
+    let x: Vec<f64> = (0..640)
+        .map(|k| 1e-6 + ((k * 7919 % 641) as f64 / 641.0).powi(2))
+        .collect();
     let levels = available_levels();
     for l in &levels {
         force_level(*l);

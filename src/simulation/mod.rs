@@ -1,13 +1,22 @@
 //! A simulation: assembled from a configuration and particles, advanced in time, looked at.
 
 mod assembly;
+mod checkpoint;
 mod config;
+mod diagnostics;
+mod engine;
+mod inspect;
+mod sample;
 mod solver;
 mod timers;
 
+pub use checkpoint::{Entries, Entry};
 pub use config::{
-    ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName,
-    LaminarViscosityConfig, ShiftingConfig, ShiftingForm, WallConfig,
+    ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName, LaminarViscosityConfig,
+    ShiftingConfig, ShiftingForm, WallConfig,
 };
+pub use diagnostics::Diagnostics;
+pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulation, Status};
+pub use sample::Sample;
 pub use solver::{Body, Progress, Solver};
 pub use timers::{PHASES, Phase, Timers};

@@ -339,6 +339,12 @@ def test_junk_in_any_place_is_a_scene_error_or_a_scene() -> None:
     assert tried > 1000
 
 
+def test_a_misspelt_key_is_not_also_missing() -> None:
+    with pytest.raises(SceneError) as caught:
+        loads(edited(SPACING, "spacng = 0.01"))
+    assert [p.path for p in caught.value.problems] == [("spacng",)]
+
+
 def test_missing_file(tmp_path: Path) -> None:
     (tmp_path / "tank.toml").write_text(GOOD, encoding="utf-8")
     with pytest.raises(SceneError, match=r"found no such file; did you mean 'tank\.toml'"):
@@ -360,7 +366,7 @@ def test_a_folder_and_a_binary_are_no_scene(tmp_path: Path) -> None:
 def test_unknown_case() -> None:
     with pytest.raises(SceneError, match="'dam-brake'; did you mean 'dam-break'"):
         load("dam-brake")
-    with pytest.raises(SceneError, match="there is dam-break, dam-break-box"):
+    with pytest.raises(SceneError, match="There is dam-break, dam-break-box"):
         cases.get("nothing")
 
 
@@ -401,7 +407,7 @@ def test_a_bad_python_file(text: str, message: str, tmp_path: Path) -> None:
         ("spacng", 0.1, "spacng: unknown key; did you mean 'spacing'"),
         ("fluid.watr.density", 1.0, "fluid.watr: names nothing; did you mean 'water'"),
         ("fluid.water.density.x", 1.0, "fluid.water.density.x: 'density' is no table"),
-        ("fluid.9.density", 1.0, "fluid.9: names nothing; there is water"),
+        ("fluid.9.density", 1.0, "fluid.9: names nothing. There is water"),
         ("until", "long", 'until: found "long", must be a number'),
         ("spacing", None, "spacing: is missing"),
     ],

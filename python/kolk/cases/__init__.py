@@ -76,8 +76,8 @@ def get(name: str) -> Case:
         from kolk.scene.base import nearest
 
         raise SceneError(
-            f"no built-in scene is called '{name}'{nearest(name, names()) or ';'} "
-            f"there is {', '.join(names())}"
+            f"no built-in scene is called '{name}'{nearest(name, names()) or '.'} "
+            f"There is {', '.join(names())}"
         )
     case = import_module(f"{__name__}.{name.replace('-', '_')}").case
     assert isinstance(case, Case)

@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 
 from kolk.cases import Comparison
 from kolk.compare import records
+from kolk.compare.align import crossing
 from kolk.compare.band import align, first_peak
 from kolk.compare.front import ALIGNED_AT, align_front
 from kolk.references import Reference
@@ -42,8 +43,13 @@ def draw(
     about: str = "",
     shift: float = 0.0,
     legend: float = 8.5,
+    also: Sequence[Comparison] = (),
 ) -> None:
-    """The record of a probe, with its reference where there is one. ``about``: axis label."""
+    """The record of a probe, with its reference where there is one.
+
+    about: axis label of a probe without one. shift: see :func:`kolk.compare.common_shift`.
+    also: further references of a front.
+    """
     time = table["time"].to_numpy(np.float64)
     style.plot_axes(axes)
     if match is None:
@@ -53,7 +59,7 @@ def draw(
         if match.kind == "band":
             _draw_band(axes, time, value, match)
         elif match.kind == "front":
-            _draw_front(axes, time, value, match)
+            _draw_front(axes, time, value, match, also)
         else:
             _draw_series(axes, time, value, match, shift)
     axes.legend(loc="best", handlelength=1.4, fontsize=legend)
@@ -102,22 +108,34 @@ def _draw_band(axes: Axes, time: FloatArray, value: FloatArray, match: Compariso
     _labels(axes, reference, "median")
 
 
-def _draw_front(axes: Axes, time: FloatArray, value: FloatArray, match: Comparison) -> None:
+def _draw_front(
+    axes: Axes,
+    time: FloatArray,
+    value: FloatArray,
+    match: Comparison,
+    also: Sequence[Comparison] = (),
+) -> None:
     reference = records.reference_of(match)
+    level = match.parameters.get("align", ALIGNED_AT)
     run = align_front(
         time,
         value - match.parameters.get("origin", 0.0),
         reference,
         match.scale_time,
         match.scale_value,
-        match.parameters.get("align", ALIGNED_AT),
+        level,
     )
     label = "kolk"
     if math.isfinite(run.shift):
-        label += f", aligned at {ALIGNED_AT} (shift {run.shift:+.2f})"
-        axes.axhline(ALIGNED_AT, color=style.QUIET, lw=0.7, ls=(0, (4, 3)))
+        label += f", aligned at {level} (shift {run.shift:+.2f})"
+        axes.axhline(level, color=style.QUIET, lw=0.7, ls=(0, (4, 3)))
     axes.plot(run.time, run.front, color=style.RUN, label=label)
-    _points(axes, reference, "front")
+    _points(axes, reference, 0.0, style.REFERENCE)
+    meet = crossing(reference.time, reference.values("front"), level)
+    for further in also:
+        other = records.reference_of(further)
+        late = crossing(other.time, other.values("front"), level) - meet
+        _points(axes, other, -late, style.SECOND)
     reached = float(run.front.max())
     axes.set_ylim(0.9, 1.1 * reached)
     axes.set_xlim(min(0.0, float(run.time[0])), float(run.time[-1]) * 1.02)
@@ -134,14 +152,15 @@ def _draw_series(
     t = time / match.scale_time + shift
     label = f"kolk, shifted by {shift:+.2f}" if shift else "kolk"
     axes.plot(t, value / match.scale_value * kilo, color=style.RUN, lw=1.1, label=label)
-    values = reference.values(column) * kilo
+    end = max(float(t[-1]), min(float(reference.time[-1]), 1.15 * float(t[-1])))
+    # what lies beyond the picture must not stretch its other axis
+    shown = reference.time <= end
+    clock, values = reference.time[shown], reference.values(column)[shown] * kilo
     if reference.kind == "experiment":
-        axes.plot(
-            reference.time, values, "o-", ms=2.8, lw=0.8, color=style.REFERENCE, label="experiment"
-        )
+        axes.plot(clock, values, "o-", ms=2.8, lw=0.8, color=style.REFERENCE, label="experiment")
     else:
-        axes.plot(reference.time, values, lw=1.1, color=style.SECOND, label=reference.title)
-    if column in reference.peaks:
+        axes.plot(clock, values, lw=1.1, color=style.SECOND, label=reference.title)
+    if column in reference.peaks and reference.peaks[column][1] <= end:
         peak, when = reference.peaks[column]
         axes.plot(
             when,
@@ -152,18 +171,18 @@ def _draw_series(
             mec=style.REFERENCE,
             label="experiment, peak of the full record",
         )
-    axes.set_xlim(0.0, max(float(t[-1]), min(float(reference.time[-1]), 1.15 * float(t[-1]))))
+    axes.set_xlim(0.0, end)
     _labels(axes, reference, column)
 
 
-def _points(axes: Axes, reference: Reference, column: str) -> None:
+def _points(axes: Axes, reference: Reference, shift: float, ink: str) -> None:
     axes.plot(
-        reference.time,
-        reference.values(column),
+        reference.time + shift,
+        reference.values("front"),
         "o",
         ms=4.5,
         mfc="white",
-        mec=style.REFERENCE,
+        mec=ink,
         mew=1.2,
         label=reference.title,
         zorder=4,
@@ -182,12 +201,13 @@ def probe_picture(
     match: Comparison | None = None,
     about: str = "",
     shift: float = 0.0,
+    also: Sequence[Comparison] = (),
 ) -> Path:
     """One probe as a PNG, its reference drawn in where there is one."""
     with style.look():
         made = style.figure(7.0, 3.8)
         axes = made.add_axes((0.1, 0.14, 0.87, 0.75))
-        draw(axes, table, match, about, shift)
+        draw(axes, table, match, about, shift, also=also)
         axes.set_title(name if match is None else f"{name}: {records.reference_of(match).title}")
         return style.save(made, path)
 
@@ -199,24 +219,25 @@ def pressure_sheet(
     title: str = "",
     shift: float = 0.0,
 ) -> Path:
-    """Pressure probes against their references: the band large, further sensors below it.
+    """Pressure probes against their references: a band large, further sensors below it.
 
     ``matches`` in the order to show, at least one; ``tables`` by probe. ``shift``: see
     :func:`kolk.compare.common_shift`.
     """
-    first, rest = matches[0], matches[1:]
+    first, rest = (matches[0], matches[1:]) if matches[0].kind == "band" else (None, matches)
     columns = 3 if len(rest) == 3 else 2
     rows = math.ceil(len(rest) / columns)
-    width, big, small = 9.5, 3.6, 2.1
+    width, big, small = 9.5, 3.6 if first else -0.75, 2.1
     gap, top, bottom = 0.75, 0.8, 0.55
     height = top + big + rows * (small + gap) + bottom
     with style.look():
         made = style.figure(width, height)
         made.text(0.08, 1 - 0.3 / height, title, weight="bold", fontsize=12, va="center")
         y = height - top - big
-        axes = made.add_axes((0.08, y / height, 0.89, big / height))
-        draw(axes, tables[str(first.probe)], first, shift=shift)
-        axes.set_title(_sensor(first))
+        if first:
+            axes = made.add_axes((0.08, y / height, 0.89, big / height))
+            draw(axes, tables[str(first.probe)], first, shift=shift)
+            axes.set_title(_sensor(first))
         inner = (0.89 - 0.08 * (columns - 1)) / columns
         for k, match in enumerate(rest):
             row, column = divmod(k, columns)
@@ -229,4 +250,7 @@ def pressure_sheet(
 
 
 def _sensor(match: Comparison) -> str:
+    # a table with a column per sensor is named in the sheet's title already
+    if match.column:
+        return str(match.probe)
     return f"{match.probe}: {records.reference_of(match).title}"

@@ -108,7 +108,7 @@ def colour_range(shown: Quantity, frames: Iterable[FrameLike]) -> Normalize:
 
 def time_label(time: float, scales: Scales | None = None) -> str:
     """``t = 0.42 s`` and, where the case has scales, the same in sqrt(H/g)."""
-    text = f"t = {time:.3g} s" if time < 0.1 else f"t = {time:.2f} s"
+    text = f"t = {time:.3f} s" if 0.0 < time < 0.1 else f"t = {time:.2f} s"
     if scales:
         text += rf"  ({time / scales.time:.2f} $\sqrt{{H/g}}$)"
     return text

@@ -88,7 +88,7 @@ class Studio:
                     self.run.probes,
                     pressures,
                     self.folder / "pressure.png",
-                    f"{self.title}: pressure",
+                    f"{self.title}: pressure" if self.scales else self.title,
                     common_shift(self.run, self.asked),
                 )
             )
@@ -114,7 +114,10 @@ class Studio:
         return [job(name) for name in self._shown()]
 
     def _probes(self) -> list[Callable[[], Path]]:
-        matches = {c.probe: c for c in reversed(self.asked)}
+        matches = {
+            name: [c for c in self.asked if c.probe == name and c.kind != "analytic"]
+            for name in self.run.probes
+        }
         shift = common_shift(self.run, self.asked)
         about = getattr(self.run.probes, "about", {})
 
@@ -123,7 +126,10 @@ class Studio:
             label = f"{told.get('quantity', '')} [{told.get('unit', '')}]" if told else ""
             path = self.folder / f"probe-{name}.png"
             table = self.run.probes[name]
-            return lambda: curves.probe_picture(name, table, path, matches.get(name), label, shift)
+            match, *also = matches[name] or [None]
+            return lambda: curves.probe_picture(
+                name, table, path, match, label, shift, [c for c in also if c]
+            )
 
         return [job(name) for name in self.run.probes if len(self.run.probes[name]) > 1]
 

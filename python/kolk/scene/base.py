@@ -109,12 +109,24 @@ def _problems(model: type[Model], data: Mapping[str, Any], error: ValidationErro
             found.extend(p.under(path) for p in inner.problems)
         else:
             found.append(Problem(path, _message(model, detail)))
+    found = _without_misspelt(model, error, found)
     # A list whose items are wrong is also "too short": only the items are news.
     return [
         p
         for p in found
         if not any(len(q.path) > len(p.path) and q.path[: len(p.path)] == p.path for q in found)
     ]
+
+
+def _without_misspelt(
+    model: type[Model], error: ValidationError, found: list[Problem]
+) -> list[Problem]:
+    """``found`` less the keys that are missing only because they are misspelt."""
+    details = error.errors(include_url=False)
+    unknown = [str(d["loc"][-1]) for d in details if d["type"] == "extra_forbidden"]
+    missing = {str(d["loc"][-1]) for d in details if d["type"] == "missing"}
+    meant = {m for word in unknown for m in difflib.get_close_matches(word, model.keys(), 1)}
+    return [p for p in found if p.path not in {(key,) for key in missing & meant}]
 
 
 def _named(path: tuple[str | int, ...], data: Mapping[str, Any]) -> tuple[str | int, ...]:

@@ -137,8 +137,8 @@ def _probes(scene: Scene) -> Iterator[Problem]:
 
 
 def _no_body(name: str, kind: str, known: list[str]) -> str:
-    have = f"there is {', '.join(known)}" if known else f"the scene has no {kind}"
-    return f'found "{name}", which is no {kind}{nearest(name, known) or ";"} {have}'
+    have = f"There is {', '.join(known)}" if known else f"The scene has no {kind}"
+    return f'found "{name}", which is no {kind}{nearest(name, known) or "."} {have}'
 
 
 def _periods(scene: Scene) -> Iterator[Problem]:

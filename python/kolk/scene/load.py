@@ -68,7 +68,7 @@ def _read(path: Path) -> str:
     except FileNotFoundError:
         siblings = [p.name for p in path.parent.glob("*.toml")] if path.parent.is_dir() else []
         raise SceneError(
-            f"found no such file{nearest(path.name, siblings) or ';'} write a new one with "
+            f"found no such file{nearest(path.name, siblings) or '.'} Write a new one with "
             f"'kolk new {path}'"
         ) from None
     except UnicodeDecodeError as error:
@@ -132,13 +132,13 @@ def _built_in(name: str) -> Scene:
 
     if name in cases.names():
         return cases.get(name).scene
-    hint = nearest(name, cases.names()) or ";"
+    hint = nearest(name, cases.names()) or "."
     if Path(name).exists():
         raise SceneError(
             f"{name}: is neither .toml nor .py: give a scene file, or a built-in scene: "
             f"{', '.join(cases.names())}"
         )
     raise SceneError(
-        f"no built-in scene is called '{name}'{hint} there is {', '.join(cases.names())}. "
+        f"no built-in scene is called '{name}'{hint} There is {', '.join(cases.names())}. "
         "A file must end in .toml or .py"
     )

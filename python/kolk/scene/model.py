@@ -198,12 +198,12 @@ def _put(data: dict[str, Any], key: str, value: Any) -> None:
                 index = int(part)
             else:
                 known = [n for n in names if n] or [str(i) for i in range(len(here))]
-                hint = nearest(part, known) or ";"
+                hint = nearest(part, known) or "."
                 raise SceneError(
                     problems=[
                         Problem(
                             path,
-                            f"names nothing{hint} there is {', '.join(known)}",
+                            f"names nothing{hint} There is {', '.join(known)}",
                         )
                     ]
                 )
