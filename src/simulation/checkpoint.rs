@@ -1,0 +1,180 @@
+//! The whole state of a simulation, out and in again to the bit.
+//!
+//! The order of the particles and the cells they were sorted into belong to it: they decide the order of every sum.
+
+use super::solver::Solver;
+use crate::error::{Error, Result};
+use crate::particles::Column;
+use crate::simd::Real;
+use crate::step::{Limit, State};
+
+/// One entry of a checkpoint. Single-precision columns are widened, which loses nothing.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Entry {
+    /// Doubles.
+    Reals(Vec<f64>),
+    /// Whole numbers.
+    Integers(Vec<u64>),
+}
+
+/// A checkpoint by name.
+pub type Entries = Vec<(String, Entry)>;
+
+fn widen<R: Real>(column: &[R]) -> Entry {
+    Entry::Reals(column.iter().map(|x| x.to_f64()).collect())
+}
+
+fn integers(column: &[u32]) -> Entry {
+    Entry::Integers(column.iter().map(|&x| u64::from(x)).collect())
+}
+
+/// Takes entries out of a checkpoint, checking that they fit.
+struct Reader<'a>(&'a Entries);
+
+impl Reader<'_> {
+    fn find(&self, name: &str) -> Result<&Entry> {
+        let entry = self.0.iter().find(|(n, _)| n == name).map(|(_, e)| e);
+        entry.ok_or_else(|| Error::Input(format!("checkpoint: {name} is missing; it was written by another version")))
+    }
+
+    fn reals(&self, name: &str, n: usize) -> Result<&[f64]> {
+        match self.find(name)? {
+            Entry::Reals(v) if v.len() == n => Ok(v),
+            Entry::Reals(v) => Err(misfit(name, v.len(), n)),
+            Entry::Integers(_) => Err(Error::Input(format!("checkpoint: {name} holds integers, allowed are reals"))),
+        }
+    }
+
+    fn integers(&self, name: &str, n: usize) -> Result<&[u64]> {
+        match self.find(name)? {
+            Entry::Integers(v) if v.len() == n => Ok(v),
+            Entry::Integers(v) => Err(misfit(name, v.len(), n)),
+            Entry::Reals(_) => Err(Error::Input(format!("checkpoint: {name} holds reals, allowed are integers"))),
+        }
+    }
+
+    fn column<R: Real>(&self, name: &str, to: &mut Column<R>) -> Result<()> {
+        let from = self.reals(name, to.len())?;
+        for (t, f) in to.iter_mut().zip(from) {
+            *t = R::from_f64(*f);
+        }
+        Ok(())
+    }
+
+    /// A table of indices into `n` particles.
+    fn table(&self, name: &str, to: &mut [u32], limit: usize) -> Result<()> {
+        let from = self.integers(name, to.len())?;
+        for (t, &f) in to.iter_mut().zip(from) {
+            if f > limit as u64 {
+                return Err(Error::Input(format!("checkpoint: {name} holds {f}, allowed is at most {limit}")));
+            }
+            *t = f as u32;
+        }
+        Ok(())
+    }
+}
+
+fn misfit(name: &str, found: usize, wanted: usize) -> Error {
+    Error::Input(format!(
+        "checkpoint: {name} has {found} entries, the scene needs {wanted}; it belongs to another scene or version"
+    ))
+}
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// The state, complete.
+    pub fn save(&self) -> Entries {
+        let fluid = &self.fluid;
+        let mut out: Entries = Vec::new();
+        let mut put = |name: &str, entry: Entry| out.push((name.to_owned(), entry));
+        for a in 0..D {
+            put(&format!("position_{a}"), Entry::Reals(fluid.position[a].to_vec()));
+            put(&format!("velocity_{a}"), Entry::Reals(fluid.velocity[a].to_vec()));
+            put(&format!("acceleration_{a}"), widen(&fluid.acceleration[a]));
+        }
+        put("density", Entry::Reals(fluid.density.to_vec()));
+        put("density_rate", widen(&fluid.density_rate));
+        put("mass", widen(&fluid.mass));
+        put("id", integers(&fluid.id));
+        put("cells", integers(&fluid.cells.offsets));
+        // What was read by pairs last: shown by probes until the next step.
+        put("volume", widen(&fluid.volume));
+        put("pressure", widen(&fluid.pressure));
+        if let Some(wall) = &self.wall {
+            put("wall_pressure", widen(&wall.pressure));
+            put("wall_volume", widen(&wall.volume));
+            put("wall_condensation", widen(&wall.condensation));
+            if let Some((density, rate)) = &wall.density {
+                put("wall_density", Entry::Reals(density.to_vec()));
+                put("wall_density_rate", widen(rate));
+            }
+        }
+        let s = &self.state;
+        put(
+            "scalars",
+            Entry::Reals(vec![
+                self.time,
+                self.time_step,
+                self.travelled,
+                self.mach_max,
+                s.speed,
+                s.acceleration,
+                s.density_min,
+                s.density_max,
+            ]),
+        );
+        let mut counters = vec![self.step, u64::from(self.primed), self.limit as u64, u64::from(s.finite)];
+        counters.extend(self.steps_by_limit);
+        put("counters", Entry::Integers(counters));
+        out
+    }
+
+    /// Goes on from a saved state.
+    ///
+    /// # Errors
+    /// An entry that is missing, or does not fit this scene; the simulation must not be used then.
+    pub fn restore(&mut self, entries: &Entries) -> Result<()> {
+        let from = Reader(entries);
+        let fluid = &mut self.fluid;
+        let n = fluid.len();
+        for a in 0..D {
+            from.column(&format!("position_{a}"), &mut fluid.position[a])?;
+            from.column(&format!("velocity_{a}"), &mut fluid.velocity[a])?;
+            from.column(&format!("acceleration_{a}"), &mut fluid.acceleration[a])?;
+        }
+        from.column("density", &mut fluid.density)?;
+        from.column("density_rate", &mut fluid.density_rate)?;
+        from.column("mass", &mut fluid.mass)?;
+        from.table("id", &mut fluid.id, n)?;
+        from.table("cells", &mut fluid.cells.offsets, n)?;
+        from.column("volume", &mut fluid.volume)?;
+        from.column("pressure", &mut fluid.pressure)?;
+        if !fluid.cells.offsets.is_sorted() {
+            return Err(Error::Input("checkpoint: cells are not in order; the file is damaged".to_owned()));
+        }
+        if let Some(wall) = &mut self.wall {
+            from.column("wall_pressure", &mut wall.pressure)?;
+            from.column("wall_volume", &mut wall.volume)?;
+            from.column("wall_condensation", &mut wall.condensation)?;
+            if let Some((density, rate)) = &mut wall.density {
+                from.column("wall_density", density)?;
+                from.column("wall_density_rate", rate)?;
+            }
+        }
+        let s = from.reals("scalars", 8)?;
+        (self.time, self.time_step, self.travelled, self.mach_max) = (s[0], s[1], s[2], s[3]);
+        let c = from.integers("counters", 4 + Limit::ALL.len())?;
+        self.step = c[0];
+        self.primed = c[1] != 0;
+        self.limit = *Limit::ALL.get(c[2] as usize).unwrap_or(&Limit::Acoustic);
+        self.state = State {
+            speed: s[4],
+            acceleration: s[5],
+            density_min: s[6],
+            density_max: s[7],
+            finite: c[3] != 0,
+        };
+        self.steps_by_limit.copy_from_slice(&c[4..]);
+        self.sweeper.wipe();
+        Ok(())
+    }
+}
