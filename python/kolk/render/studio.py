@@ -126,10 +126,9 @@ class Studio:
             label = f"{told.get('quantity', '')} [{told.get('unit', '')}]" if told else ""
             path = self.folder / f"probe-{name}.png"
             table = self.run.probes[name]
-            match, *also = matches[name] or [None]
-            return lambda: curves.probe_picture(
-                name, table, path, match, label, shift, [c for c in also if c]
-            )
+            found = matches[name]
+            match = found[0] if found else None
+            return lambda: curves.probe_picture(name, table, path, match, label, shift, found[1:])
 
         return [job(name) for name in self.run.probes if len(self.run.probes[name]) > 1]
 
