@@ -11,6 +11,7 @@ from kolk.errors import RunError
 from kolk.output.atomic import replacing, write_json, write_text
 from kolk.output.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from kolk.output.folder import RunFolder, free_folder, newest_folder, safe_name
+from kolk.output.image import MemoryFile
 from kolk.output.tables import Table, read_table
 
 
@@ -162,3 +163,21 @@ def test_names_of_probes_become_file_names() -> None:
     assert safe_name("P2") == "P2"
     assert safe_name("a/b c") == "a_b_c"
     assert safe_name("..") == "_"
+
+
+def test_a_file_in_memory_is_a_file(tmp_path: Path) -> None:
+    random = np.random.default_rng(3)
+    memory, plain = MemoryFile(), bytearray()
+    for _ in range(200):
+        place, size = int(random.integers(0, 300_000)), int(random.integers(0, 100_000))
+        data = random.bytes(size)
+        plain.extend(bytes(max(place + size - len(plain), 0)))
+        plain[place : place + size] = data
+        memory.seek(place)
+        assert memory.write(data) == size
+        place, size = int(random.integers(0, 400_000)), int(random.integers(0, 100_000))
+        memory.seek(place)
+        assert memory.read(size) == bytes(plain[place : place + size])
+    memory.truncate(len(plain) + 100_000)
+    memory.save(tmp_path / "file")
+    assert (tmp_path / "file").read_bytes() == bytes(plain) + bytes(100_000)

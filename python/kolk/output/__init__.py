@@ -9,4 +9,5 @@
 | `summary` | `summary.json` |
 | `journal` | `log.txt` |
 | `atomic` | how a file is replaced as a whole |
+| `image` | HDF5 files made in memory, so that a full disk is an error and no crash |
 """

@@ -19,6 +19,7 @@ import numpy as np
 
 from kolk.errors import RunError
 from kolk.output.atomic import replacing, storage_error
+from kolk.output.image import hdf5_image
 
 FORMAT = 1
 """Layout of the file; a reader refuses another one."""
@@ -43,7 +44,7 @@ class Checkpoint:
 def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
     """Replaces the checkpoint. Raises `RunError`; the earlier one then stays."""
     try:
-        with replacing(path) as temporary, h5py.File(temporary, "w", libver="earliest") as file:
+        with replacing(path) as temporary, hdf5_image(temporary) as file:
             file.attrs["format"] = FORMAT
             file.attrs["scene"] = checkpoint.scene
             file.attrs["book"] = json.dumps(dict(checkpoint.book))
@@ -52,9 +53,8 @@ def write_checkpoint(path: Path, checkpoint: Checkpoint) -> None:
             for number, (name, value) in enumerate(checkpoint.state.items()):
                 _put(group, str(number), value)
                 group[str(number)].attrs["name"] = name
-    except (OSError, RuntimeError) as error:
-        known = error if isinstance(error, OSError) else OSError(None, str(error))
-        raise storage_error(path, known, "write the checkpoint") from error
+    except OSError as error:
+        raise storage_error(path, error, "write the checkpoint") from error
 
 
 def read_checkpoint(path: Path) -> Checkpoint:

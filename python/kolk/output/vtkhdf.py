@@ -35,6 +35,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from kolk.output.atomic import replacing, storage_error
 from kolk.output.commit import PAGE, StepCount, find_step_count
+from kolk.output.image import hdf5_image, write_at
 
 VERSION = (2, 0)
 """Version of the VTKHDF format: the first with transient PolyData."""
@@ -146,9 +147,8 @@ class FieldsFile:
                 value = np.asarray(fields[name])
                 data = _three(value) if components == 3 else value
                 self._put(f"PointData/{name}", data, components)
-            self._write_all(
-                np.float64(time).tobytes(), self._places["Steps/Values"] + 8 * self.frames
-            )
+            moment = np.array([time], dtype=np.float64)
+            write_at(self._descriptor, moment, self._places["Steps/Values"] + 8 * self.frames)
             os.fsync(self._descriptor)
             self.frames += 1
             try:
@@ -189,13 +189,7 @@ class FieldsFile:
             raise OSError(None, f"{name} has the shape {value.shape}, not {expected}")
         kind = self._types[name]
         data = np.ascontiguousarray(value, dtype=kind)
-        self._write_all(data.tobytes(), self._places[name] + self.frames * data.nbytes)
-
-    def _write_all(self, data: bytes, offset: int) -> None:
-        view = memoryview(data)
-        while view:
-            written = os.pwrite(self._descriptor, view, offset)
-            view, offset = view[written:], offset + written
+        write_at(self._descriptor, data, self._places[name] + self.frames * data.nbytes)
 
     def _commit(self) -> None:
         self._count.write(self._descriptor, self.frames)
@@ -262,7 +256,7 @@ def _build_padded(path: Path, layout: FieldsLayout, capacity: int, padding: int)
     steps = np.arange(capacity, dtype=np.int64)
     rows = steps * layout.count
     nothing = np.zeros(capacity, dtype=np.int64)
-    with h5py.File(path, "w", libver="earliest") as file:
+    with hdf5_image(path) as file:
         own = file.create_group("kolk")
         own.attrs["about"] = json.dumps(about)
         if padding:
@@ -321,10 +315,8 @@ def _copy(source: int, start: int, target: int, place: int, size: int) -> None:
         block = os.pread(source, min(size - done, 1 << 24), start + done)
         if not block:
             raise OSError(None, "the file is shorter than its frames")
-        view = memoryview(block)
-        while view:
-            written = os.pwrite(target, view, place + done)
-            view, done = view[written:], done + written
+        write_at(target, block, place + done)
+        done += len(block)
 
 
 def _three(value: ArrayLike) -> NDArray[Any]:
