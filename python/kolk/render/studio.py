@@ -51,7 +51,7 @@ class Studio:
         jobs = [*self._sheets(), *self._exact(), *self._fields(), *self._probes()]
         frames = len(self.run.frames) if film else 0
         filmed = frames if self.flat else space.film_frames(frames)
-        with Bar(len(jobs) + filmed, self.quiet) as bar:
+        with Bar(len(jobs) + filmed, self.quiet, at_once=not self.flat) as bar:
             for job in jobs:
                 made.append(job())
                 bar.step()
@@ -158,8 +158,10 @@ def _scales(run: RunLike) -> Scales | None:
 class Bar:
     """A progress bar on standard error after PATIENCE; none where that is no terminal."""
 
-    def __init__(self, total: int, quiet: bool) -> None:
+    def __init__(self, total: int, quiet: bool, *, at_once: bool = False) -> None:
+        """``at_once``: without patience, where the first picture alone takes long."""
         self._total = total
+        self._patience = 0.0 if at_once else PATIENCE
         self._done = 0
         self._begun = clock.monotonic()
         self._wanted = not quiet and sys.stderr.isatty()
@@ -167,6 +169,7 @@ class Bar:
         self._task: Any = None
 
     def __enter__(self) -> Bar:
+        self._show()
         return self
 
     def __exit__(self, *error: object) -> None:
@@ -176,7 +179,10 @@ class Bar:
     def step(self) -> None:
         """One picture or one frame of a film is done."""
         self._done += 1
-        if not self._wanted or clock.monotonic() < self._begun + PATIENCE:
+        self._show()
+
+    def _show(self) -> None:
+        if not self._wanted or clock.monotonic() < self._begun + self._patience:
             return
         if self._bar is None:
             from rich.console import Console

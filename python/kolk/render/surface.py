@@ -22,11 +22,19 @@ from .raster import Image
 
 FloatArray = npt.NDArray[np.float64]
 
-START_LIMIT = 60.0
-"""Seconds that the child may take before its first picture; a broken driver hangs for ever."""
+START_LIMIT = 30.0
+"""Seconds that the child may take to begin; a broken driver hangs for ever."""
 
-PICTURE_LIMIT = 60.0
-"""Seconds that each picture may take."""
+PICTURE_LIMIT = 10.0
+"""Seconds that each picture may take besides its particles."""
+
+SLOWEST = 4000.0
+"""Particles a second below which a picture is given up: a tenth of what one core does."""
+
+
+def time_limit(counts: Sequence[int]) -> float:
+    """Seconds allowed for pictures of so many particles each."""
+    return START_LIMIT + sum(PICTURE_LIMIT + count / SLOWEST for count in counts)
 
 
 @dataclass(frozen=True)
@@ -79,7 +87,7 @@ def surfaces(
                 stdin=subprocess.DEVNULL,
                 stdout=subprocess.DEVNULL,
                 stderr=subprocess.DEVNULL,
-                timeout=START_LIMIT + PICTURE_LIMIT * len(clouds),
+                timeout=time_limit([len(cloud.position) for cloud in clouds]),
                 check=False,
             )
         except (subprocess.TimeoutExpired, OSError):
