@@ -46,9 +46,8 @@ class Energy:
 class BodyView:
     """A body of a running simulation; its attributes are NumPy arrays of the present time.
 
-    The order of the particles is stable: row i is the same particle at every time (`id`). The
-    arrays are copies made on access and kept until the simulation moves on: reading one twice
-    costs nothing, and writing to one changes nothing in the simulation.
+    The order of the particles is stable: row i is the same particle at every time (`id`). Each
+    access gives a copy of its own: writing to it changes nothing in the simulation.
     """
 
     def __init__(self, simulation: Simulation, name: str, kind: str) -> None:
@@ -56,7 +55,7 @@ class BodyView:
         self.name = name
         self.kind = kind
         """ "fluid" or "wall"."""
-        self._arrays: Mapping[str, NDArray[Any]] = {}
+        self._kept: Mapping[str, NDArray[Any]] = {}
         self._at = (-1, -1.0)
 
     @property
@@ -91,21 +90,21 @@ class BodyView:
 
     def arrays(self) -> Mapping[str, NDArray[Any]]:
         """All arrays by name, read at once."""
-        engine = self._simulation._engine
-        now = (int(engine.step_count), float(engine.time))
-        if self._at != now:
-            self._arrays = MappingProxyType(dict(engine.body(self.name)))
-            self._at = now
-        return self._arrays
+        return dict(self._simulation._engine.body(self.name))
 
     def __len__(self) -> int:
-        return len(self.arrays()["id"])
+        return len(self._simulation.initial[self.name].mass)
 
     def __repr__(self) -> str:
         return f"<{self.kind} {self.name!r}: {len(self)} particles>"
 
     def _array(self, name: str) -> NDArray[Any]:
-        return self.arrays()[name]
+        # The engine gathers all columns at once: keep them for the next one of the same moment.
+        engine = self._simulation._engine
+        now = (int(engine.step_count), float(engine.time))
+        if self._at != now:
+            self._kept, self._at = self.arrays(), now
+        return self._kept[name].copy()
 
 
 class Bodies(Mapping[str, BodyView]):

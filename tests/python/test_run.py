@@ -333,3 +333,58 @@ def test_the_schedule_ends_on_time(until: float, every: float, times: list[float
 def test_folders_that_are_no_runs_are_refused(tmp_path: Path) -> None:
     with pytest.raises(RunError, match=r"no scene\.toml"):
         kolk.open_run(tmp_path)
+
+
+def test_a_run_that_was_killed_early_opens(tank: Path) -> None:
+    folder = kolk.run("tank.toml", quiet=True).folder
+    (folder / "summary.json").unlink()
+    with (folder / "probes" / "P.csv").open("a", encoding="utf-8") as table:
+        table.write("0.123,4")
+    run = kolk.open_run(folder)
+    assert run.outcome == "unfinished"
+    assert run.summary == {}
+    assert sorted(run.probes) == ["P", "front", "level", "load", "speed"]
+    assert run.probes["P"]["time"].iloc[-1] <= 0.1
+    (folder / "fields.vtkhdf").unlink()
+    with pytest.raises(RunError, match="no frames"):
+        _ = kolk.open_run(folder).frames
+
+
+def test_a_run_outside_the_main_thread_leaves_signals_alone(tank: Path) -> None:
+    before = signal.getsignal(signal.SIGINT)
+    outcome: list[str] = []
+    thread = threading.Thread(
+        target=lambda: outcome.append(kolk.run("tank.toml", quiet=True).outcome)
+    )
+    thread.start()
+    thread.join()
+    assert outcome == ["done"]
+    assert signal.getsignal(signal.SIGINT) is before
+
+
+def test_the_loop_belongs_to_the_user(tank: Path) -> None:
+    simulation = kolk.Simulation(kolk.load("tank.toml"), threads=1)
+    water = simulation.bodies["water"]
+    before = water.position
+    water.position[:] = 0.0
+    assert water.position.tobytes() == before.tobytes()
+    simulation.advance(0.01)
+    assert simulation.time == pytest.approx(0.01, abs=1e-15)
+    assert (water.position != before).any()
+    assert simulation.energy.kinetic > 0.0
+    assert simulation.energy.total == pytest.approx(
+        sum((simulation.energy.kinetic, simulation.energy.potential, simulation.energy.compression))
+    )
+    assert simulation.momentum.shape == (2,)
+    assert simulation.step_count == sum(simulation.steps_by_limit.values())
+    state = simulation.state()
+    simulation.advance(0.01)
+    after = water.position.tobytes()
+    simulation.restore(state)
+    assert simulation.time == pytest.approx(0.01, abs=1e-15)
+    simulation.advance(0.01)
+    assert water.position.tobytes() == after
+    with pytest.raises(KeyError, match="no body 'oil'"):
+        simulation.bodies["oil"]
+    with pytest.raises(kolk.KolkError, match="not a time"):
+        simulation.advance(float("nan"))
