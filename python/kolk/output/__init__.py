@@ -2,6 +2,7 @@
 
 | module | file |
 |---|---|
+| `recorder` | all of them: the observer that a run hands its states to |
 | `folder` | the run's folder: names, claiming a free one, clearing, the lock |
 | `vtkhdf` | `fields.vtkhdf`, the time series for ParaView and PyVista |
 | `tables` | `probes/*.csv` and `history.csv`, appended by whole lines |

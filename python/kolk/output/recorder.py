@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 COMPONENTS = {"velocity": 3, "pressure": 1, "density": 1}
 """Fields of a frame that change, and the components that the file holds of each."""
 
+MOST_PLANNED = 2000
+"""Frames that a time series makes room for in advance; a longer one grows."""
+
 HISTORY = (
     "kinetic_energy",
     "potential_energy",
@@ -99,7 +102,7 @@ class Recorder:
     ) -> None:
         self.simulation, self.folder, self.watch = simulation, folder, watch
         self.probes = list(probes)
-        self._fields, self._capacity = tuple(fields), capacity
+        self._fields, self._capacity = tuple(fields), min(capacity, MOST_PLANNED)
         self._series: FieldsFile | None = None
         self._samplers: list[Sampler] = []
         self._history: Table | None = None
