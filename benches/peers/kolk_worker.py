@@ -43,7 +43,7 @@ def vortex(scene: Scene, shared: dict[str, Any]) -> kolk.Scene:
         **shared,
         periodic={"x": [0.0, 1.0], "y": [0.0, 1.0]},
         fluid=[water],
-        numerics={"density_diffusion": "antuono", "shifting": "lind"},
+        numerics={"density_diffusion": "antuono", "shifting": "sun"},
     )
 
 

@@ -86,6 +86,9 @@ FULL = [
 ]
 
 
+SCENES = ["dam-break-2d", "dam-break-3d", "taylor-green"]
+
+
 class Failed(Exception):
     """A run that did not end well; the message says why."""
 
@@ -155,6 +158,7 @@ def parse(arguments: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--threads", type=int, default=2)
     parser.add_argument("--rounds", type=int, help="default: 2, with --full 5")
     parser.add_argument("--codes", nargs="+", choices=names, default=names)
+    parser.add_argument("--scenes", nargs="+", choices=SCENES, default=SCENES)
     parser.add_argument("--json", type=Path, help="also write the figures to this file")
     return parser.parse_args(arguments)
 
@@ -169,6 +173,8 @@ def main(arguments: list[str] | None = None) -> int:
     timeout = 3600.0 if options.full else 600.0
     everything = {}
     for task in FULL if options.full else SHORT:
+        if task.scene not in options.scenes:
+            continue
         results = compare(task, environments, rounds, options.threads, timeout)
         print_figures(results)
         print_ratios(results)

@@ -76,7 +76,8 @@ def tank_walls(upper: tuple[float, ...], spacing: float, layers: int) -> Array:
         axes.append((np.arange(-layers, round(top / spacing) + above) + 0.5) * spacing)
     grid = np.stack([axis.ravel() for axis in np.meshgrid(*axes, indexing="ij")], axis=1)
     inside = np.all((grid > 0.0) & (grid < np.asarray(upper)), axis=1)
-    return grid[~inside]
+    walls: Array = grid[~inside]
+    return walls
 
 
 def dam_break(
@@ -146,7 +147,8 @@ def vortex_velocity(position: Array, time: float) -> Array:
     """Velocity (n, 2) of the Taylor-Green vortex at ``position`` (n, 2): Taylor and Green 1937."""
     decay = np.exp(-8.0 * np.pi**2 / REYNOLDS * time)
     x, y = 2.0 * np.pi * position[:, 0], 2.0 * np.pi * position[:, 1]
-    return decay * np.stack([-np.cos(x) * np.sin(y), np.sin(x) * np.cos(y)], axis=1)
+    velocity: Array = decay * np.stack([-np.cos(x) * np.sin(y), np.sin(x) * np.cos(y)], axis=1)
+    return velocity
 
 
 def vortex_pressure(position: Array) -> Array:

@@ -150,11 +150,9 @@ class Run:
         if self.job.variant == "wcsph":
             return 1.0
         step = self.simulation.getTimeStep()
-        return (
-            1.0
-            + step.getValueUInt(step.SOLVER_ITERATIONS)
-            + step.getValueUInt(step.SOLVER_ITERATIONS_V)
-        )
+        pressure = step.getValueUInt(step.SOLVER_ITERATIONS)
+        divergence = step.getValueUInt(step.SOLVER_ITERATIONS_V)
+        return 1.0 + float(pressure) + float(divergence)
 
     def after_step(self) -> None:
         """Counts a step; the first steps are not timed where the number of steps is given."""
