@@ -31,6 +31,9 @@ CHECKPOINT_SHARE = 0.05
 BREATH = 0.1
 """Seconds of work between two looks at the clock and at the keyboard."""
 
+MOST_STEPS = 10_000
+"""Steps that the engine is asked for at once."""
+
 
 class RunStopped(RunError):
     """A run ended by something outside the physics after it had begun; what it wrote is kept."""
@@ -211,16 +214,18 @@ class Execution:
             Progress(until, start=simulation.time, quiet=self.quiet) as progress,
             self._interrupts as interrupts,
         ):
+            # Probes look at every step; without them the engine works for a breath at a time.
             steps = 1
             while simulation.time < until:
                 self._target = target = self.schedule.after(simulation.time)
                 while simulation.time < target:
                     begun = clock.perf_counter()
                     with interrupts.during():
-                        # Probes look at every step; others let the engine breathe now and then.
-                        simulation.advance_to(target, 1 if self.recorder.sampling else steps)
-                    spent = clock.perf_counter() - begun
-                    steps = max(1, min(2 * steps, int(steps * BREATH / max(spent, 1e-6))))
+                        simulation.advance_to(target, steps)
+                    if not self.recorder.sampling:
+                        spent = clock.perf_counter() - begun
+                        fitting = int(steps * BREATH / max(spent, 1e-6))
+                        steps = max(1, min(2 * steps, fitting, MOST_STEPS))
                     self.recorder.sample()
                     progress.update(simulation.time, simulation.step_count, simulation.time_step)
                     interrupts.check()
