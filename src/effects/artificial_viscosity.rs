@@ -1,7 +1,6 @@
 //! Artificial viscosity.
 
 use super::PairTerm;
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
 
@@ -31,9 +30,9 @@ impl ArtificialViscosity {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for ArtificialViscosity {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

@@ -1,7 +1,6 @@
 //! Continuity.
 
 use super::PairTerm;
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
 
@@ -11,9 +10,9 @@ pub struct Continuity;
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Continuity {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

@@ -6,15 +6,14 @@
 //! diffusivity of `δ h c0`: dissipates compression energy; use δ = 0.1.
 
 use super::PairTerm;
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Sums};
 
 /// The term for a difference of condensation beyond the expected one.
 #[inline(always)]
-fn diffuse<L: Lanes, K: ChosenKernel, const D: usize>(
+fn diffuse<L: Lanes, const D: usize>(
     strength: f64,
-    pair: &Pair<L, K, D>,
+    pair: &Pair<L, D>,
     other: &Other<L, D>,
     excess: L,
     sums: &mut Sums<L, D>,
@@ -78,9 +77,9 @@ impl<const D: usize> Fourtakas<D> {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Molteni {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -97,9 +96,9 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Molteni {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Antuono {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -119,9 +118,9 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Antuono {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Fourtakas<D> {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -145,9 +144,9 @@ pub struct DensityGradient;
 
 impl<R: Real, const D: usize> PairTerm<R, D> for DensityGradient {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

@@ -1,7 +1,6 @@
 //! Laminar viscosity.
 
 use super::PairTerm;
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
 
@@ -26,9 +25,9 @@ impl LaminarViscosity {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for LaminarViscosity {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

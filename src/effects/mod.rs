@@ -15,16 +15,15 @@ pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni};
 pub use laminar_viscosity::LaminarViscosity;
 pub use pressure::Pressure;
 
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Pair, Splat, Sums};
 
 /// A term of a pair sum. `add` must be `#[inline(always)]`.
 pub trait PairTerm<R: Real, const D: usize>: Copy + Send + Sync {
     /// Adds what a vector of neighbours gives.
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -34,9 +33,9 @@ pub trait PairTerm<R: Real, const D: usize>: Copy + Send + Sync {
 /// An effect that the scene does not call for.
 impl<R: Real, const D: usize> PairTerm<R, D> for () {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        _: &Pair<L, K, D>,
+        _: &Pair<L, D>,
         _: &Splat<L, D>,
         _: &Other<L, D>,
         _: &mut Sums<L, D>,
@@ -47,9 +46,9 @@ impl<R: Real, const D: usize> PairTerm<R, D> for () {
 /// Two effects together.
 impl<R: Real, A: PairTerm<R, D>, B: PairTerm<R, D>, const D: usize> PairTerm<R, D> for (A, B) {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

@@ -1,7 +1,6 @@
 //! Pressure.
 
 use super::PairTerm;
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Pair, Splat, Sums};
 
@@ -12,9 +11,9 @@ pub struct Pressure;
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Pressure {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn add<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

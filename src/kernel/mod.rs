@@ -3,7 +3,6 @@
 //! A simulation runs one kernel as a static type ([`with_kernel!`] turns a name into it); the methods of
 //! [`KernelName`] evaluate any kernel in one, two or three dimensions for users, plots and tests.
 
-mod chosen;
 mod cubic;
 mod name;
 mod quintic;
@@ -12,7 +11,6 @@ mod wendland_c2;
 mod wendland_c4;
 mod wendland_c6;
 
-pub use chosen::{ChosenKernel, Fixed};
 pub use cubic::Cubic;
 pub use name::{KernelName, UnknownKernel};
 pub use quintic::Quintic;

@@ -1,6 +1,7 @@
 //! The kernels by name, and any of them evaluated for single numbers.
 
 use super::{Kernel, Scaled};
+use crate::simd::Lanes;
 use crate::with_kernel;
 use serde::{Deserialize, Serialize};
 use std::fmt;
@@ -42,6 +43,23 @@ impl KernelName {
             Self::WendlandC4 => "wendland-c4",
             Self::WendlandC6 => "wendland-c6",
         }
+    }
+
+    /// `w(q)` in two and three dimensions on lanes.
+    #[inline(always)]
+    pub(crate) fn shape<L: Lanes>(self, q: L) -> L {
+        with_kernel!(self, K => K::shape(q))
+    }
+
+    /// `w'(q) / q` in two and three dimensions on lanes.
+    #[inline(always)]
+    pub(crate) fn slope_over_q<L: Lanes>(self, q: L) -> L {
+        with_kernel!(self, K => K::slope_over_q(q))
+    }
+
+    /// `σ_D`.
+    pub(crate) fn normalisation(self, dimension: usize) -> f64 {
+        with_kernel!(self, K => K::normalisation(dimension))
     }
 
     /// Support radius in smoothing lengths.

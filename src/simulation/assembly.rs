@@ -8,7 +8,7 @@ use crate::effects::{
     Molteni, PairTerm,
 };
 use crate::eos::{AnyEos, Linear, Tait};
-use crate::kernel::{Fixed, KernelName, WendlandC2};
+use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
 use crate::simd::Real;
@@ -69,12 +69,7 @@ impl<R: Real, const D: usize> Stage<'_, R, D> {
             wall: self.wall,
             pass,
         };
-        match kernel {
-            KernelName::WendlandC2 => self
-                .sweeper
-                .run(Fixed::<WendlandC2>::default(), &sweep, out),
-            other => self.sweeper.run(other, &sweep, out),
-        }
+        self.sweeper.run(kernel, &sweep, out);
     }
 }
 

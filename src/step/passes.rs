@@ -1,7 +1,6 @@
 //! The two sweeps of a step.
 
 use crate::effects::{DensityGradient, PairTerm, Pressure};
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
 
@@ -33,9 +32,9 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
     for Forces<V, G>
 {
     #[inline(always)]
-    fn fluid<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn fluid<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -46,9 +45,9 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
     }
 
     #[inline(always)]
-    fn wall<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn wall<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -95,9 +94,9 @@ impl<R: Real, C: PairTerm<R, D>, T: PairTerm<R, D>, const D: usize> Pass<R, D>
     for DensityRate<C, T>
 {
     #[inline(always)]
-    fn fluid<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn fluid<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
@@ -107,9 +106,9 @@ impl<R: Real, C: PairTerm<R, D>, T: PairTerm<R, D>, const D: usize> Pass<R, D>
     }
 
     #[inline(always)]
-    fn wall<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn wall<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,

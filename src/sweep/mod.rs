@@ -13,7 +13,7 @@ mod pair;
 
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
 
-use crate::kernel::ChosenKernel;
+use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
 use crate::simd::{Lanes, Real, Task, dispatch, dot};
@@ -46,18 +46,18 @@ pub struct Sums<L, const D: usize> {
 /// What is summed over neighbours, and what is made of the sums. Methods must be `#[inline(always)]`.
 pub trait Pass<R: Real, const D: usize>: Sync {
     /// Adds a vector of fluid neighbours.
-    fn fluid<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn fluid<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     );
 
     /// Adds a vector of wall neighbours.
-    fn wall<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn wall<L: Lanes<Real = R>>(
         &self,
-        _pair: &Pair<L, K, D>,
+        _pair: &Pair<L, D>,
         _own: &Splat<L, D>,
         _other: &Other<L, D>,
         _sums: &mut Sums<L, D>,
@@ -184,9 +184,9 @@ impl<R: Real> Sweeper<R> {
     }
 
     /// Runs a pass with `kernel`; `out` are columns of the target.
-    pub fn run<K: ChosenKernel, P: Pass<R, D>, const D: usize>(
+    pub fn run<P: Pass<R, D>, const D: usize>(
         &self,
-        kernel: K,
+        kernel: KernelName,
         sweep: &Sweep<R, P, D>,
         out: Output<R>,
     ) {
@@ -196,9 +196,9 @@ impl<R: Real> Sweeper<R> {
     }
 
     /// Halves the tasks until one is left; every half gets its own part of the output.
-    fn split<K: ChosenKernel, P: Pass<R, D>, const D: usize>(
+    fn split<P: Pass<R, D>, const D: usize>(
         &self,
-        kernel: K,
+        kernel: KernelName,
         sweep: &Sweep<R, P, D>,
         tasks: Range<usize>,
         n: usize,
@@ -266,16 +266,16 @@ impl<R: Real> Sweeper<R> {
 }
 
 /// Some consecutive cells: the work of one task.
-struct Slab<'a, 'b, R, K, P, const D: usize> {
+struct Slab<'a, 'b, R, P, const D: usize> {
     sweep: &'a Sweep<'a, R, P, D>,
     h: f64,
     cells: Range<usize>,
     workspace: &'a mut Workspace<R>,
     out: Output<'b, R>,
-    kernel: K,
+    kernel: KernelName,
 }
 
-impl<R: Real, K: ChosenKernel, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, K, P, D> {
+impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
     type Output = ();
 
     #[inline(always)]
@@ -287,7 +287,7 @@ impl<R: Real, K: ChosenKernel, P: Pass<R, D>, const D: usize> Task<R> for Slab<'
             wall,
             pass,
         } = self.sweep;
-        let geometry = Geometry::<L, K, D>::new(self.kernel, self.h);
+        let geometry = Geometry::<L, D>::new(self.kernel, self.h);
         let reach = R::from_f64(self.h * self.kernel.support() * (1.0 + 1e-5));
         let edge = grid.edge();
         let start = target
@@ -348,14 +348,10 @@ impl<R: Real, K: ChosenKernel, P: Pass<R, D>, const D: usize> Task<R> for Slab<'
                     let x = relative(i).map(L::splat);
                     let mut sums = Sums::zero();
                     if fluid.is_some() {
-                        geometry.each(&x, &selected[0], |pair, other| {
-                            pass.fluid(pair, &Splat(&own), other, &mut sums)
-                        });
+                        geometry.add::<P, false>(pass, &x, &own, &selected[0], &mut sums);
                     }
                     if wall.is_some() {
-                        geometry.each(&x, &selected[1], |pair, other| {
-                            pass.wall(pair, &Splat(&own), other, &mut sums)
-                        });
+                        geometry.add::<P, true>(pass, &x, &own, &selected[1], &mut sums);
                     }
                     pass.finish(&own, &sums, i - start, &mut self.out);
                 }
@@ -378,18 +374,18 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
 }
 
 /// Constants of the kernel as lanes.
-struct Geometry<L, K, const D: usize> {
+struct Geometry<L, const D: usize> {
     inverse_h: L,
     support2: L,
     value: L,
     slope: L,
     tiny: L,
-    kernel: K,
+    kernel: KernelName,
 }
 
-impl<L: Lanes, K: ChosenKernel, const D: usize> Geometry<L, K, D> {
+impl<L: Lanes, const D: usize> Geometry<L, D> {
     #[inline(always)]
-    fn new(kernel: K, h: f64) -> Self {
+    fn new(kernel: KernelName, h: f64) -> Self {
         let sigma = kernel.normalisation(D);
         Geometry {
             inverse_h: L::constant(1.0 / h),
@@ -401,38 +397,59 @@ impl<L: Lanes, K: ChosenKernel, const D: usize> Geometry<L, K, D> {
         }
     }
 
-    /// Calls `visit` for every vector of `others` around `x`.
+    /// Adds to `sums` what `pass` makes of every vector of `others` around `x`, which are walls if `WALL`.
     #[inline(always)]
-    fn each(
+    fn add<P: Pass<L::Real, D>, const WALL: bool>(
         &self,
+        pass: &P,
         x: &[L; D],
+        own: &Own<L::Real, D>,
         others: &Buffer<L::Real>,
-        mut visit: impl FnMut(&Pair<L, K, D>, &Other<L, D>),
+        sums: &mut Sums<L, D>,
+    ) {
+        // One loop for the default kernel, and one for all others with a branch per vector: read as if the name could
+        // change, for the compiler would otherwise make a copy of the loop per kernel, and of every sweep five.
+        let step = L::N;
+        match self.kernel {
+            KernelName::WendlandC2 => {
+                for k in (0..others.len()).step_by(step) {
+                    self.vector::<P, WALL>(KernelName::WendlandC2, pass, x, own, others, k, sums);
+                }
+            }
+            _ => {
+                for k in (0..others.len()).step_by(step) {
+                    // SAFETY: a reference is valid for reads.
+                    let kernel = unsafe { std::ptr::read_volatile(&self.kernel) };
+                    self.vector::<P, WALL>(kernel, pass, x, own, others, k, sums);
+                }
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn vector<P: Pass<L::Real, D>, const WALL: bool>(
+        &self,
+        kernel: KernelName,
+        pass: &P,
+        x: &[L; D],
+        own: &Own<L::Real, D>,
+        others: &Buffer<L::Real>,
+        k: usize,
+        sums: &mut Sums<L, D>,
     ) {
         let stride = others.stride();
-        for k in (0..others.len()).step_by(L::N) {
-            let other = Other::<L, D> {
-                at: others.column(0).wrapping_add(k),
-                stride,
-            };
-            let separation = std::array::from_fn(|a| {
-                // SAFETY: the buffer is closed by a whole vector of particles out of reach.
-                x[a] - unsafe { L::load(other.at.add(a * stride)) }
-            });
-            let squared = dot(&separation, &separation);
-            let inside = squared.less(self.support2);
-            let q = squared.max(self.tiny).sqrt() * self.inverse_h;
-            let slope = (self.slope * self.kernel.slope_over_q(q)).only(inside);
-            let pair = Pair {
-                separation,
-                squared,
-                slope,
-                q,
-                inside,
-                normalisation: self.value,
-                kernel: self.kernel,
-            };
-            visit(&pair, &other);
+        let other = Other::<L, D> { at: others.column(0).wrapping_add(k), stride };
+        // SAFETY: the buffer is closed by a whole vector of particles out of reach.
+        let separation = std::array::from_fn(|a| x[a] - unsafe { L::load(other.at.add(a * stride)) });
+        let squared = dot(&separation, &separation);
+        let inside = squared.less(self.support2);
+        let q = squared.max(self.tiny).sqrt() * self.inverse_h;
+        let slope = (self.slope * kernel.slope_over_q(q)).only(inside);
+        let pair = Pair { separation, squared, slope, q, inside, normalisation: self.value, kernel };
+        if WALL {
+            pass.wall(&pair, &Splat(own), &other, sums);
+        } else {
+            pass.fluid(&pair, &Splat(own), &other, sums);
         }
     }
 }

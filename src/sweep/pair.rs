@@ -1,7 +1,7 @@
 //! What a pair term sees: the geometry of a vector of pairs, the particle itself, and its neighbours.
 
 use super::SLOTS;
-use crate::kernel::ChosenKernel;
+use crate::kernel::KernelName;
 use crate::simd::{Lanes, Real};
 
 /// Names of the fields that a source may carry.
@@ -19,7 +19,7 @@ pub mod slot {
 }
 
 /// Geometry of one particle and a vector of neighbours.
-pub struct Pair<L: Lanes, K, const D: usize> {
+pub struct Pair<L: Lanes, const D: usize> {
     /// `r_i - r_j`.
     pub separation: [L; D],
     /// `|r_i - r_j|²`.
@@ -29,10 +29,10 @@ pub struct Pair<L: Lanes, K, const D: usize> {
     pub(super) q: L,
     pub(super) inside: L::Mask,
     pub(super) normalisation: L,
-    pub(super) kernel: K,
+    pub(super) kernel: KernelName,
 }
 
-impl<L: Lanes, K: ChosenKernel, const D: usize> Pair<L, K, D> {
+impl<L: Lanes, const D: usize> Pair<L, D> {
     /// `W`, zero out of reach.
     #[inline(always)]
     pub fn weight(&self) -> L {

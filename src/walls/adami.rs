@@ -1,7 +1,6 @@
 //! Dummy particles with extrapolated pressure (Adami, Hu & Adams 2012).
 
 use crate::eos::{AnyEos, EquationOfState};
-use crate::kernel::ChosenKernel;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
 
@@ -23,9 +22,9 @@ pub struct Extrapolation<const D: usize> {
 
 impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
     #[inline(always)]
-    fn fluid<L: Lanes<Real = R>, K: ChosenKernel>(
+    fn fluid<L: Lanes<Real = R>>(
         &self,
-        pair: &Pair<L, K, D>,
+        pair: &Pair<L, D>,
         _own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
