@@ -4,15 +4,19 @@
 //! that does not know it.
 
 mod artificial_viscosity;
+mod contact;
 mod continuity;
 mod density_diffusion;
 mod laminar_viscosity;
+mod particle_shifting;
 mod pressure;
 
 pub use artificial_viscosity::ArtificialViscosity;
+pub use contact::Contact;
 pub use continuity::Continuity;
 pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni};
-pub use laminar_viscosity::LaminarViscosity;
+pub use laminar_viscosity::{MonaghanGingold, Morris, fastest_decay};
+pub use particle_shifting::Shift;
 pub use pressure::Pressure;
 
 use crate::simd::{Lanes, Real};

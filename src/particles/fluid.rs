@@ -30,6 +30,8 @@ pub struct Fluid<R, const D: usize> {
     pub condensation: Column<R>,
     /// Renormalised gradient of the condensation in 1/m, if the density diffusion calls for it.
     pub gradient: Option<[Column<R>; D]>,
+    /// Shift of the present step in m, if the scene calls for particle shifting.
+    pub shift: Option<[Column<R>; D]>,
     /// Particles by cell.
     pub cells: Cells,
     sorter: Sorter,
@@ -38,7 +40,7 @@ pub struct Fluid<R, const D: usize> {
 
 impl<R: Real, const D: usize> Fluid<R, D> {
     /// Takes over the particles given.
-    pub fn new(given: &Given, grid: &Grid<D>, with_gradient: bool) -> Self {
+    pub fn new(given: &Given, grid: &Grid<D>, with_gradient: bool, with_shift: bool) -> Self {
         let n = given.mass.len();
         Fluid {
             position: std::array::from_fn(|a| component::<D>(&given.position, a)),
@@ -53,6 +55,7 @@ impl<R: Real, const D: usize> Fluid<R, D> {
             pressure: Column::new(n),
             condensation: Column::new(n),
             gradient: with_gradient.then(|| vector_columns(n)),
+            shift: with_shift.then(|| vector_columns(n)),
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
             sorter: Sorter::new(n),
             scratch: Column::new(n),
@@ -143,7 +146,8 @@ impl<R: Real, const D: usize> Fluid<R, D> {
         let rates = D * self.acceleration[0].bytes() + self.density_rate.bytes();
         let pairs = D * self.pair_velocity[0].bytes()
             + 3 * self.volume.bytes()
-            + self.gradient.as_ref().map_or(0, |g| D * g[0].bytes());
+            + self.gradient.as_ref().map_or(0, |g| D * g[0].bytes())
+            + self.shift.as_ref().map_or(0, |s| D * s[0].bytes());
         let sort = self.cells.bytes() + self.sorter.bytes() + self.scratch.bytes();
         [
             ("fluid state", state),

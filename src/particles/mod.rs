@@ -59,16 +59,17 @@ impl Given {
                 )));
             }
         }
-        let check = |array: &str, values: &[f64], stride: usize, positive: bool| {
-            match values.iter().position(|v| !v.is_finite() || (positive && *v <= 0.0)) {
-                Some(k) => Err(Error::Input(format!(
-                    "{body}.{array}: found {} at particle {}, allowed are finite numbers{}",
-                    values[k],
-                    k / stride,
-                    if positive { " above 0" } else { "" }
-                ))),
-                None => Ok(()),
-            }
+        let check = |array: &str, values: &[f64], stride: usize, positive: bool| match values
+            .iter()
+            .position(|v| !v.is_finite() || (positive && *v <= 0.0))
+        {
+            Some(k) => Err(Error::Input(format!(
+                "{body}.{array}: found {} at particle {}, allowed are finite numbers{}",
+                values[k],
+                k / stride,
+                if positive { " above 0" } else { "" }
+            ))),
+            None => Ok(()),
         };
         check("position", &self.position, dimension, false)?;
         check("velocity", &self.velocity, dimension, false)?;

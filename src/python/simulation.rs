@@ -4,7 +4,9 @@ use crate::error::Error;
 use crate::particles::Given;
 use crate::simulation::{BodyInput, Config, Entry, Precision, Progress, Simulation};
 use crate::step::Limit;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods};
+use numpy::{
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::time::Duration;
@@ -78,7 +80,10 @@ impl PySimulation {
         };
         let mut inputs = Vec::with_capacity(bodies.len());
         for (name, kind, position, velocity, density, mass) in bodies {
-            for (array, found) in [("position", position.shape()[1]), ("velocity", velocity.shape()[1])] {
+            for (array, found) in [
+                ("position", position.shape()[1]),
+                ("velocity", velocity.shape()[1]),
+            ] {
                 if found != config.dimension {
                     return Err(SceneError::new_err(format!(
                         "{name}.{array}: found {found} components, the scene has {}",
@@ -101,7 +106,11 @@ impl PySimulation {
                 density: density.as_array().iter().copied().collect(),
                 mass: mass.as_array().iter().copied().collect(),
             };
-            inputs.push(BodyInput { name, fluid, particles });
+            inputs.push(BodyInput {
+                name,
+                fluid,
+                particles,
+            });
         }
         py.detach(|| Simulation::new(config, inputs, precision, threads))
             .map(PySimulation)
@@ -112,7 +121,9 @@ impl PySimulation {
     #[pyo3(signature = (time, max_steps=None))]
     fn advance_to(&mut self, py: Python<'_>, time: f64, max_steps: Option<u64>) -> PyResult<u64> {
         if !time.is_finite() {
-            return Err(KolkError::new_err(format!("time: found {time}, allowed is a finite number of seconds")));
+            return Err(KolkError::new_err(format!(
+                "time: found {time}, allowed is a finite number of seconds"
+            )));
         }
         let mut left = max_steps.unwrap_or(u64::MAX);
         let mut done = 0;
@@ -211,7 +222,8 @@ impl PySimulation {
             };
             entries.push((name, entry));
         }
-        py.detach(|| self.0.restore(&entries)).map_err(|e| raise(py, e))
+        py.detach(|| self.0.restore(&entries))
+            .map_err(|e| raise(py, e))
     }
 
     fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
@@ -286,7 +298,9 @@ impl PySimulation {
     }
 
     fn force<'py>(&self, py: Python<'py>, body: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (force, moment) = py.detach(|| self.0.force_on(body)).map_err(|e| raise(py, e))?;
+        let (force, moment) = py
+            .detach(|| self.0.force_on(body))
+            .map_err(|e| raise(py, e))?;
         let dict = PyDict::new(py);
         dict.set_item("force", PyArray1::from_vec(py, force))?;
         dict.set_item("moment", PyArray1::from_vec(py, moment))?;

@@ -1,18 +1,18 @@
 //! From a configuration to the passes of a step: the one place that knows which effects there are.
 
-use super::config::{Config, DiffusionForm, EosName};
+use super::config::{Config, DiffusionForm, EosName, ShiftingForm, ViscosityForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
-    Antuono, ArtificialViscosity, Continuity, DensityGradient, Fourtakas, LaminarViscosity,
-    Molteni, PairTerm,
+    Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
+    Morris, PairTerm, Shift,
 };
 use crate::eos::{AnyEos, Linear, Tait};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
 use crate::simd::Real;
-use crate::step::{DensityRate, Forces, GradientTerm};
+use crate::step::{DensityRate, Forces, GradientTerm, ShiftTerm};
 use crate::sweep::{Output, Pass, Source, Sweep, Sweeper, slot};
 use crate::walls::{Extrapolation, Slip, WallMethod};
 
@@ -144,20 +144,26 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let artificial = c
             .artificial_viscosity
             .map(|v| ArtificialViscosity::new(v.alpha, v.beta, c.sound_speed, h, rho));
-        let laminar = c
-            .laminar_viscosity
-            .map(|v| LaminarViscosity::new(v.kinematic, h, rho));
-        match (artificial, laminar, self.fluid.gradient.is_some()) {
-            (None, None, false) => self.run_forces((), ()),
-            (None, None, true) => self.run_forces((), DensityGradient),
-            (Some(a), None, false) => self.run_forces(a, ()),
-            (Some(a), None, true) => self.run_forces(a, DensityGradient),
-            (None, Some(l), false) => self.run_forces(l, ()),
-            (None, Some(l), true) => self.run_forces(l, DensityGradient),
-            (Some(a), Some(l), false) => self.run_forces((a, l), ()),
-            (Some(a), Some(l), true) => self.run_forces((a, l), DensityGradient),
+        let laminar = c.laminar_viscosity.map(|v| (v.form, v.kinematic));
+        match (artificial, laminar) {
+            (None, None) => self.forces_with(()),
+            (Some(a), None) => self.forces_with(a),
+            (None, Some((ViscosityForm::Morris, nu))) => self.forces_with(Morris::new(nu, h, rho)),
+            (None, Some((ViscosityForm::MonaghanGingold, nu))) => {
+                self.forces_with(MonaghanGingold::new(nu, h, rho));
+            }
+            // Artificial viscosity means a free surface: one form is enough beside it.
+            (Some(a), Some((_, nu))) => self.forces_with((a, MonaghanGingold::new(nu, h, rho))),
         }
         self.timers.book(Phase::Forces);
+    }
+
+    fn forces_with<V: PairTerm<R, D>>(&mut self, viscosity: V) {
+        if self.fluid.gradient.is_some() {
+            self.run_forces(viscosity, DensityGradient);
+        } else {
+            self.run_forces(viscosity, ());
+        }
     }
 
     fn run_forces<V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm>(
@@ -168,6 +174,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let pass = Forces {
             viscosity,
             gradient,
+            contact: Contact::new(
+                self.config.spacing,
+                self.config.sound_speed,
+                self.config.reference_density,
+            ),
             no_slip: self.config.wall.is_some_and(|w| w.slip == Slip::No),
             specific_volume: 1.0 / self.config.reference_density,
         };
@@ -208,30 +219,50 @@ impl<R: Real, const D: usize> Solver<R, D> {
         stage.run(self.kernel, &pass, out);
     }
 
-    /// The sweep of continuity.
-    pub(super) fn sum_density_rates(&mut self) {
+    /// The sweep of continuity, and of the shift over the step `dt`.
+    pub(super) fn sum_density_rates(&mut self, dt: f64) {
         let c = &self.config;
         let (h, c0) = (c.smoothing_length, c.sound_speed);
         match c.density_diffusion.map(|d| (d.form, d.delta)) {
-            None => self.run_density_rates(()),
+            None => self.rates_with((), dt),
             Some((DiffusionForm::Molteni, delta)) => {
-                self.run_density_rates(Molteni::new(delta, h, c0))
+                self.rates_with(Molteni::new(delta, h, c0), dt)
             }
             Some((DiffusionForm::Antuono, delta)) => {
-                self.run_density_rates(Antuono::new(delta, h, c0))
+                self.rates_with(Antuono::new(delta, h, c0), dt)
             }
             Some((DiffusionForm::Fourtakas, delta)) => {
-                self.run_density_rates(Fourtakas::<D>::new(delta, h, c0, c.gamma, c.gravity()));
+                self.rates_with(Fourtakas::<D>::new(delta, h, c0, c.gamma, c.gravity()), dt);
             }
         }
         self.timers.book(Phase::Continuity);
     }
 
-    fn run_density_rates<T: PairTerm<R, D>>(&mut self, diffusion: T) {
+    fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
+        let (c, kernel) = (&self.config, self.kernel);
+        let (h, spacing, speed) = (c.smoothing_length, c.spacing, self.state.speed);
+        match c.shifting.map(|s| (s.form, s.free_surface)) {
+            None => self.run_density_rates(diffusion, ()),
+            Some((ShiftingForm::Sun, surface)) => {
+                self.run_density_rates(
+                    diffusion,
+                    Shift::sun::<D>(kernel, h, spacing, speed, dt, surface),
+                );
+            }
+            Some((ShiftingForm::Lind, surface)) => {
+                self.run_density_rates(
+                    diffusion,
+                    Shift::lind::<D>(kernel, h, spacing, dt, surface),
+                );
+            }
+        }
+    }
+
+    fn run_density_rates<T: PairTerm<R, D>, S: ShiftTerm<R, D>>(&mut self, diffusion: T, shift: S) {
         let reference_density = self.config.reference_density;
         let pass = DensityRate {
-            continuity: Continuity,
             diffusion,
+            shift,
             reference_density,
         };
         let fluid = &mut self.fluid;
@@ -255,7 +286,17 @@ impl<R: Real, const D: usize> Solver<R, D> {
             fluid: Some(&source),
             wall: wall.as_ref(),
         };
-        stage.run(self.kernel, &pass, outputs([(0, &mut fluid.density_rate)]));
+        let shifts = fluid
+            .shift
+            .iter_mut()
+            .flatten()
+            .enumerate()
+            .map(|(a, c)| (3 + a, c));
+        stage.run(
+            self.kernel,
+            &pass,
+            outputs(std::iter::once((0, &mut fluid.density_rate)).chain(shifts)),
+        );
         // Walls that follow the equation of continuity: the same sum, over the fluid.
         if let Some(w) = &mut self.wall
             && let Some((_, rate)) = &mut w.density
@@ -265,8 +306,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 .with(slot::CONDENSATION, &w.condensation)
                 .with_vector(slot::VELOCITY, &w.pair_velocity);
             let pass = DensityRate {
-                continuity: Continuity,
                 diffusion: (),
+                shift: (),
                 reference_density,
             };
             let stage = Stage {

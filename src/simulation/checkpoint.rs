@@ -34,14 +34,20 @@ struct Reader<'a>(&'a Entries);
 impl Reader<'_> {
     fn find(&self, name: &str) -> Result<&Entry> {
         let entry = self.0.iter().find(|(n, _)| n == name).map(|(_, e)| e);
-        entry.ok_or_else(|| Error::Input(format!("checkpoint: {name} is missing; it was written by another version")))
+        entry.ok_or_else(|| {
+            Error::Input(format!(
+                "checkpoint: {name} is missing; it was written by another version"
+            ))
+        })
     }
 
     fn reals(&self, name: &str, n: usize) -> Result<&[f64]> {
         match self.find(name)? {
             Entry::Reals(v) if v.len() == n => Ok(v),
             Entry::Reals(v) => Err(misfit(name, v.len(), n)),
-            Entry::Integers(_) => Err(Error::Input(format!("checkpoint: {name} holds integers, allowed are reals"))),
+            Entry::Integers(_) => Err(Error::Input(format!(
+                "checkpoint: {name} holds integers, allowed are reals"
+            ))),
         }
     }
 
@@ -49,7 +55,9 @@ impl Reader<'_> {
         match self.find(name)? {
             Entry::Integers(v) if v.len() == n => Ok(v),
             Entry::Integers(v) => Err(misfit(name, v.len(), n)),
-            Entry::Reals(_) => Err(Error::Input(format!("checkpoint: {name} holds reals, allowed are integers"))),
+            Entry::Reals(_) => Err(Error::Input(format!(
+                "checkpoint: {name} holds reals, allowed are integers"
+            ))),
         }
     }
 
@@ -66,7 +74,9 @@ impl Reader<'_> {
         let from = self.integers(name, to.len())?;
         for (t, &f) in to.iter_mut().zip(from) {
             if f > limit as u64 {
-                return Err(Error::Input(format!("checkpoint: {name} holds {f}, allowed is at most {limit}")));
+                return Err(Error::Input(format!(
+                    "checkpoint: {name} holds {f}, allowed is at most {limit}"
+                )));
             }
             *t = f as u32;
         }
@@ -87,8 +97,14 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let mut out: Entries = Vec::new();
         let mut put = |name: &str, entry: Entry| out.push((name.to_owned(), entry));
         for a in 0..D {
-            put(&format!("position_{a}"), Entry::Reals(fluid.position[a].to_vec()));
-            put(&format!("velocity_{a}"), Entry::Reals(fluid.velocity[a].to_vec()));
+            put(
+                &format!("position_{a}"),
+                Entry::Reals(fluid.position[a].to_vec()),
+            );
+            put(
+                &format!("velocity_{a}"),
+                Entry::Reals(fluid.velocity[a].to_vec()),
+            );
             put(&format!("acceleration_{a}"), widen(&fluid.acceleration[a]));
         }
         put("density", Entry::Reals(fluid.density.to_vec()));
@@ -122,7 +138,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 s.density_max,
             ]),
         );
-        let mut counters = vec![self.step, u64::from(self.primed), self.limit as u64, u64::from(s.finite)];
+        let mut counters = vec![
+            self.step,
+            u64::from(self.primed),
+            self.limit as u64,
+            u64::from(s.finite),
+        ];
         counters.extend(self.steps_by_limit);
         put("counters", Entry::Integers(counters));
         out
@@ -149,7 +170,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         from.column("volume", &mut fluid.volume)?;
         from.column("pressure", &mut fluid.pressure)?;
         if !fluid.cells.offsets.is_sorted() {
-            return Err(Error::Input("checkpoint: cells are not in order; the file is damaged".to_owned()));
+            return Err(Error::Input(
+                "checkpoint: cells are not in order; the file is damaged".to_owned(),
+            ));
         }
         if let Some(wall) = &mut self.wall {
             from.column("wall_pressure", &mut wall.pressure)?;

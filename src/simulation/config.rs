@@ -92,6 +92,20 @@ pub struct ArtificialViscosityConfig {
 pub struct LaminarViscosityConfig {
     /// Kinematic viscosity in m²/s.
     pub kinematic: f64,
+    /// Form of the pair sum.
+    #[serde(default)]
+    pub form: ViscosityForm,
+}
+
+/// Forms of laminar viscosity.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ViscosityForm {
+    /// Morris, Fox & Zhu 1997: for flow without a free surface.
+    #[default]
+    Morris,
+    /// Monaghan & Gingold 1983: also under a free surface.
+    MonaghanGingold,
 }
 
 /// Density diffusion.

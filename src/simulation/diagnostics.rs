@@ -87,7 +87,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
             potential_energy: sums[1],
             compression_energy: sums[2],
             momentum: sums[3..3 + D].to_vec(),
-            angular_momentum: if D == 3 { sums[6..9].to_vec() } else { vec![sums[8]] },
+            angular_momentum: if D == 3 {
+                sums[6..9].to_vec()
+            } else {
+                vec![sums[8]]
+            },
             density_min: low,
             density_max: high,
             speed_max: speed,
@@ -119,7 +123,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     }
                     for run in self.grid.around(cell).iter() {
                         for j in cells.particles(run.first, run.end) {
-                            let y: [f64; D] = std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
+                            let y: [f64; D] =
+                                std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
                             // Each pair once: the particle with the lower index looks.
                             for i in own.start..own.end.min(j) {
                                 let mut r2 = 0.0;

@@ -76,7 +76,12 @@ pub struct EffectState {
 
 /// What every solver can do, whatever its dimension and precision.
 trait Engine: Send + Sync {
-    fn advance(&mut self, until: f64, max_steps: u64, patience: Duration) -> Result<(u64, Progress)>;
+    fn advance(
+        &mut self,
+        until: f64,
+        max_steps: u64,
+        patience: Duration,
+    ) -> Result<(u64, Progress)>;
     fn body(&self, body: &Body) -> BodyState;
     fn diagnostics(&self) -> Diagnostics;
     fn sample(&self, points: &[f64]) -> Samples;
@@ -112,7 +117,12 @@ pub struct Status {
 }
 
 impl<R: Real, const D: usize> Engine for Solver<R, D> {
-    fn advance(&mut self, until: f64, max_steps: u64, patience: Duration) -> Result<(u64, Progress)> {
+    fn advance(
+        &mut self,
+        until: f64,
+        max_steps: u64,
+        patience: Duration,
+    ) -> Result<(u64, Progress)> {
         Solver::advance(self, until, max_steps, patience)
     }
     fn body(&self, body: &Body) -> BodyState {
@@ -122,7 +132,10 @@ impl<R: Real, const D: usize> Engine for Solver<R, D> {
         Solver::diagnostics(self)
     }
     fn sample(&self, points: &[f64]) -> Samples {
-        let points: Vec<[f64; D]> = points.chunks_exact(D).map(|p| std::array::from_fn(|a| p[a])).collect();
+        let points: Vec<[f64; D]> = points
+            .chunks_exact(D)
+            .map(|p| std::array::from_fn(|a| p[a]))
+            .collect();
         let samples: Vec<Sample<D>> = Solver::sample(self, &points);
         Samples {
             pressure: samples.iter().map(|s| s.pressure).collect(),
@@ -171,7 +184,12 @@ impl Simulation {
     ///
     /// # Errors
     /// Numbers out of range, arrays that do not fit or are not finite, no fluid at all.
-    pub fn new(config: Config, bodies: Vec<BodyInput>, precision: Precision, threads: usize) -> Result<Self> {
+    pub fn new(
+        config: Config,
+        bodies: Vec<BodyInput>,
+        precision: Precision,
+        threads: usize,
+    ) -> Result<Self> {
         config.validate()?;
         let dimension = config.dimension;
         let mut fluid = Given::default();
@@ -180,18 +198,30 @@ impl Simulation {
         for body in bodies {
             body.particles.validate(&body.name, dimension)?;
             if table.iter().any(|b| b.name == body.name) {
-                return Err(Error::Input(format!("bodies: two are named {:?}; give each its own name", body.name)));
+                return Err(Error::Input(format!(
+                    "bodies: two are named {:?}; give each its own name",
+                    body.name
+                )));
             }
             let set = if body.fluid { &mut fluid } else { &mut wall };
             let first = set.mass.len() as u32;
             set.append(&body.particles);
             if set.mass.len() > (u32::MAX / 8) as usize {
-                return Err(Error::Input(format!("bodies: more than {} particles", u32::MAX / 8)));
+                return Err(Error::Input(format!(
+                    "bodies: more than {} particles",
+                    u32::MAX / 8
+                )));
             }
-            table.push(Body { name: body.name, fluid: body.fluid, ids: first..set.mass.len() as u32 });
+            table.push(Body {
+                name: body.name,
+                fluid: body.fluid,
+                ids: first..set.mass.len() as u32,
+            });
         }
         if fluid.mass.is_empty() {
-            return Err(Error::Input("bodies: there is no fluid particle; add a fluid".to_owned()));
+            return Err(Error::Input(
+                "bodies: there is no fluid particle; add a fluid".to_owned(),
+            ));
         }
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
@@ -201,22 +231,41 @@ impl Simulation {
         let threads = pool.current_num_threads();
         let engine: Box<dyn Engine> = pool.install(|| -> Box<dyn Engine> {
             match (dimension, precision) {
-                (2, Precision::F64) => Box::new(Solver::<f64, 2>::new(config, table, &fluid, &wall, threads)),
-                (2, Precision::Mixed) => Box::new(Solver::<f32, 2>::new(config, table, &fluid, &wall, threads)),
-                (_, Precision::F64) => Box::new(Solver::<f64, 3>::new(config, table, &fluid, &wall, threads)),
-                (_, Precision::Mixed) => Box::new(Solver::<f32, 3>::new(config, table, &fluid, &wall, threads)),
+                (2, Precision::F64) => {
+                    Box::new(Solver::<f64, 2>::new(config, table, &fluid, &wall, threads))
+                }
+                (2, Precision::Mixed) => {
+                    Box::new(Solver::<f32, 2>::new(config, table, &fluid, &wall, threads))
+                }
+                (_, Precision::F64) => {
+                    Box::new(Solver::<f64, 3>::new(config, table, &fluid, &wall, threads))
+                }
+                (_, Precision::Mixed) => {
+                    Box::new(Solver::<f32, 3>::new(config, table, &fluid, &wall, threads))
+                }
             }
         });
-        Ok(Simulation { engine, pool, dimension, precision })
+        Ok(Simulation {
+            engine,
+            pool,
+            dimension,
+            precision,
+        })
     }
 
     /// Steps until the time `until` (s) exactly, or until `max_steps` or the wall time `patience` is used up.
     ///
     /// # Errors
     /// [`Error::Instability`] when the state can no longer be trusted.
-    pub fn advance(&mut self, until: f64, max_steps: u64, patience: Duration) -> Result<(u64, Progress)> {
+    pub fn advance(
+        &mut self,
+        until: f64,
+        max_steps: u64,
+        patience: Duration,
+    ) -> Result<(u64, Progress)> {
         let engine = &mut self.engine;
-        self.pool.install(|| engine.advance(until, max_steps, patience))
+        self.pool
+            .install(|| engine.advance(until, max_steps, patience))
     }
 
     /// The arrays of a body.
@@ -229,7 +278,10 @@ impl Simulation {
         let bodies = self.engine.bodies();
         bodies.iter().find(|b| b.name == name).ok_or_else(|| {
             let names: Vec<_> = bodies.iter().map(|b| b.name.as_str()).collect();
-            Error::Input(format!("body: there is no {name:?}; there are {}", names.join(", ")))
+            Error::Input(format!(
+                "body: there is no {name:?}; there are {}",
+                names.join(", ")
+            ))
         })
     }
 
@@ -247,7 +299,9 @@ impl Simulation {
     pub fn force_on(&self, name: &str) -> Result<(Vec<f64>, Vec<f64>)> {
         let body = self.find(name)?;
         if body.fluid {
-            return Err(Error::Input(format!("body: {name:?} is a fluid; forces are summed on walls")));
+            return Err(Error::Input(format!(
+                "body: {name:?} is a fluid; forces are summed on walls"
+            )));
         }
         Ok(self.pool.install(|| self.engine.force_on(&body.ids)))
     }

@@ -18,11 +18,17 @@ impl<R: Real, const D: usize> Solver<R, D> {
             mass: vec![0.0; n],
         };
         let eos = &self.motion.eos;
-        let place = |id: u32| body.ids.contains(&id).then(|| (id - body.ids.start) as usize);
+        let place = |id: u32| {
+            body.ids
+                .contains(&id)
+                .then(|| (id - body.ids.start) as usize)
+        };
         if body.fluid {
             let fluid = &self.fluid;
             for i in 0..fluid.len() {
-                let Some(k) = place(fluid.id[i]) else { continue };
+                let Some(k) = place(fluid.id[i]) else {
+                    continue;
+                };
                 for a in 0..D {
                     out.position[k * D + a] = fluid.position[a][i];
                     out.velocity[k * D + a] = fluid.velocity[a][i];
@@ -71,18 +77,34 @@ impl<R: Real, const D: usize> Solver<R, D> {
     pub(super) fn effects(&self) -> Vec<EffectState> {
         let c = &self.config;
         let real = size_of::<R>();
-        let effect = |name, on| EffectState { name, on, columns: Vec::new(), bytes_per_particle: 0, limit: None };
+        let effect = |name, on| EffectState {
+            name,
+            on,
+            columns: Vec::new(),
+            bytes_per_particle: 0,
+            limit: None,
+        };
         let gradient = self.fluid.gradient.is_some();
         vec![
-            EffectState { limit: Some(Limit::Acoustic), ..effect("pressure", true) },
-            EffectState { limit: Some(Limit::Force), ..effect("gravity", c.gravity.is_some()) },
+            EffectState {
+                limit: Some(Limit::Acoustic),
+                ..effect("pressure", true)
+            },
+            EffectState {
+                limit: Some(Limit::Force),
+                ..effect("gravity", c.gravity.is_some())
+            },
             effect("artificial viscosity", c.artificial_viscosity.is_some()),
             EffectState {
                 limit: c.laminar_viscosity.map(|_| Limit::Viscous),
                 ..effect("laminar viscosity", c.laminar_viscosity.is_some())
             },
             EffectState {
-                columns: if gradient { vec!["gradient of density"] } else { Vec::new() },
+                columns: if gradient {
+                    vec!["gradient of density"]
+                } else {
+                    Vec::new()
+                },
                 bytes_per_particle: if gradient { D * real } else { 0 },
                 ..effect("density diffusion", c.density_diffusion.is_some())
             },

@@ -12,8 +12,8 @@ mod timers;
 
 pub use checkpoint::{Entries, Entry};
 pub use config::{
-    ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName, LaminarViscosityConfig,
-    ShiftingConfig, ShiftingForm, WallConfig,
+    ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName,
+    LaminarViscosityConfig, ShiftingConfig, ShiftingForm, ViscosityForm, WallConfig,
 };
 pub use diagnostics::Diagnostics;
 pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulation, Status};

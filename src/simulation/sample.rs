@@ -30,7 +30,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
         use crate::eos::EquationOfState;
         let (fluid, kernel, h) = (&self.fluid, self.kernel, self.config.smoothing_length);
         let reach2 = (h * kernel.support()).powi(2);
-        let mut sum = Sample { pressure: 0.0, density: 0.0, velocity: [0.0; D], fill: 0.0 };
+        let mut sum = Sample {
+            pressure: 0.0,
+            density: 0.0,
+            velocity: [0.0; D],
+            fill: 0.0,
+        };
         let mut at = *x;
         self.grid.wrap(&mut at);
         let mut add = |j: usize, shift: &[f64; D]| {
@@ -40,7 +45,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 return;
             }
             let density = fluid.density[j];
-            let weight = fluid.mass[j].to_f64() / density * KernelName::value(kernel, D, r2.sqrt(), h);
+            let weight =
+                fluid.mass[j].to_f64() / density * KernelName::value(kernel, D, r2.sqrt(), h);
             let head: f64 = (0..D).map(|a| self.motion.gravity[a] * d[a]).sum();
             sum.fill += weight;
             sum.pressure += weight * (self.motion.eos.pressure_at(density) + density * head);
@@ -91,7 +97,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 }
                 for run in self.grid.around(cell).iter() {
                     for j in fluid.cells.particles(run.first, run.end) {
-                        let y: [f64; D] = std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
+                        let y: [f64; D] =
+                            std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
                         for i in own.clone().filter(|&i| ids.contains(&wall.id[i])) {
                             let d: [f64; D] = std::array::from_fn(|a| y[a] - wall.position[a][i]);
                             let r2: f64 = d.iter().map(|d| d * d).sum();
@@ -126,6 +133,13 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         let force = std::array::from_fn(|a| total[a]);
-        (force, if D == 3 { total[3..].to_vec() } else { vec![total[5]] })
+        (
+            force,
+            if D == 3 {
+                total[3..].to_vec()
+            } else {
+                vec![total[5]]
+            },
+        )
     }
 }

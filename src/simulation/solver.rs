@@ -1,12 +1,14 @@
 //! The loop: one step is a screen.
 
-use super::config::Config;
+use super::config::{Config, ViscosityForm};
 use super::timers::{Phase, Timers};
+use crate::effects::fastest_decay;
 use crate::error::{Error, Instability, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
 use crate::particles::{Fluid, Given, Wall};
 use crate::simd::Real;
+use crate::step::apply_shift;
 use crate::step::{Limit, Limits, Motion, State};
 use crate::sweep::Sweeper;
 use crate::walls::{Slip, WallMethod};
@@ -16,6 +18,9 @@ use std::time::{Duration, Instant};
 const SKIN: f64 = 0.1;
 /// Largest stable Courant number of the symplectic step, times a margin.
 const COURANT: f64 = 0.5;
+
+/// Share of the stability limit (a decay of 1 per step) that a viscous step uses.
+const VISCOUS: f64 = 0.8;
 
 /// A named range of particles as they were given.
 #[derive(Clone, Debug)]
@@ -109,11 +114,15 @@ impl<R: Real, const D: usize> Solver<R, D> {
             limits: Limits {
                 courant: config.courant.unwrap_or(COURANT),
                 smoothing_length: h,
-                viscosity: config.laminar_viscosity.map_or(0.0, |v| v.kinematic),
+                viscous: config.laminar_viscosity.map_or(f64::INFINITY, |v| {
+                    let angular = v.form == ViscosityForm::MonaghanGingold;
+                    let decay = fastest_decay::<D>(config.kernel, h, config.spacing, angular);
+                    VISCOUS / (v.kinematic * decay)
+                }),
                 fixed: config.time_step,
             },
             kernel: config.kernel,
-            fluid: Fluid::new(fluid, &grid, with_gradient),
+            fluid: Fluid::new(fluid, &grid, with_gradient, config.shifting.is_some()),
             wall: set_of_walls,
             grid,
             bodies,
@@ -186,7 +195,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.update_walls();
         self.sum_forces();
         self.motion.second_half(&mut self.fluid, 0.0);
-        self.sum_density_rates();
+        self.sum_density_rates(0.0);
         self.state = self.motion.finish(&mut self.fluid, 0.0);
         self.check()?;
         self.primed = true;
@@ -210,10 +219,14 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if 2.0 * self.travelled > self.skin {
             self.sort(true);
         }
-        self.sum_density_rates();
+        self.sum_density_rates(dt);
         self.advance_walls(dt);
         self.state = self.motion.finish(&mut self.fluid, dt);
         self.timers.book(Phase::Integrate);
+        if let Some(shift) = &self.fluid.shift {
+            self.travelled += apply_shift(&mut self.fluid.position, shift);
+            self.timers.book(Phase::Shift);
+        }
         self.check()?;
         self.timers.book(Phase::Guard);
         Ok(())

@@ -2,8 +2,10 @@
 
 mod motion;
 mod passes;
+mod shift;
 mod time_step;
 
 pub use motion::{Motion, State};
-pub use passes::{DensityRate, Forces, GradientTerm};
+pub use passes::{DensityRate, Forces, GradientTerm, ShiftTerm};
+pub use shift::apply_shift;
 pub use time_step::{Limit, Limits};

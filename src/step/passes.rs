@@ -1,6 +1,6 @@
 //! The two sweeps of a step.
 
-use crate::effects::{DensityGradient, PairTerm, Pressure};
+use crate::effects::{Contact, Continuity, DensityGradient, PairTerm, Pressure, Shift};
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
 
@@ -10,6 +10,8 @@ pub struct Forces<V, G> {
     pub viscosity: V,
     /// `DensityGradient` or `()`.
     pub gradient: G,
+    /// What keeps the fluid out of walls.
+    pub contact: Contact,
     /// Whether viscosity acts between fluid and wall.
     pub no_slip: bool,
     /// `1/ρ0`.
@@ -53,6 +55,7 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
         sums: &mut Sums<L, D>,
     ) {
         Pressure.add(pair, own, other, sums);
+        self.contact.add(pair, own, other, sums);
         if self.no_slip {
             self.viscosity.add(pair, own, other, sums);
         }
@@ -80,18 +83,59 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
     }
 }
 
-/// Rate of density by continuity (`C`) and by density diffusion (`T`), the latter between fluid particles only.
-pub struct DensityRate<C, T> {
-    /// Continuity.
-    pub continuity: C,
+/// What the sweep of continuity may also sum up for: the shift of particles.
+pub trait ShiftTerm<R: Real, const D: usize>: PairTerm<R, D> {
+    /// Writes the shift of particle `i`, if there is one.
+    fn write<L: Lanes<Real = R>>(
+        &self,
+        own: &Own<R, D>,
+        sums: &Sums<L, D>,
+        i: usize,
+        out: &mut Output<R>,
+    );
+}
+
+impl<R: Real, const D: usize> ShiftTerm<R, D> for () {
+    #[inline(always)]
+    fn write<L: Lanes<Real = R>>(
+        &self,
+        _: &Own<R, D>,
+        _: &Sums<L, D>,
+        _: usize,
+        _: &mut Output<R>,
+    ) {
+    }
+}
+
+impl<R: Real, const D: usize> ShiftTerm<R, D> for Shift {
+    #[inline(always)]
+    fn write<L: Lanes<Real = R>>(
+        &self,
+        own: &Own<R, D>,
+        sums: &Sums<L, D>,
+        i: usize,
+        out: &mut Output<R>,
+    ) {
+        let shift = self.finish(own, sums);
+        for a in 0..D {
+            out[3 + a][i] = shift[a];
+        }
+    }
+}
+
+/// Rate of density by continuity and by density diffusion (`T`), the latter between fluid particles only; and the shift
+/// (`S`) of particles.
+pub struct DensityRate<T, S> {
     /// Density diffusion or `()`.
     pub diffusion: T,
+    /// Particle shifting or `()`.
+    pub shift: S,
     /// `ρ0`.
     pub reference_density: f64,
 }
 
-impl<R: Real, C: PairTerm<R, D>, T: PairTerm<R, D>, const D: usize> Pass<R, D>
-    for DensityRate<C, T>
+impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> Pass<R, D>
+    for DensityRate<T, S>
 {
     #[inline(always)]
     fn fluid<L: Lanes<Real = R>>(
@@ -101,8 +145,9 @@ impl<R: Real, C: PairTerm<R, D>, T: PairTerm<R, D>, const D: usize> Pass<R, D>
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     ) {
-        self.continuity.add(pair, own, other, sums);
+        Continuity.add(pair, own, other, sums);
         self.diffusion.add(pair, own, other, sums);
+        self.shift.add(pair, own, other, sums);
     }
 
     #[inline(always)]
@@ -113,17 +158,19 @@ impl<R: Real, C: PairTerm<R, D>, T: PairTerm<R, D>, const D: usize> Pass<R, D>
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     ) {
-        self.continuity.add(pair, own, other, sums);
+        Continuity.add(pair, own, other, sums);
+        self.shift.add(pair, own, other, sums);
     }
 
     #[inline(always)]
     fn finish<L: Lanes<Real = R>>(
         &self,
-        _own: &Own<R, D>,
+        own: &Own<R, D>,
         sums: &Sums<L, D>,
         i: usize,
         out: &mut Output<R>,
     ) {
         out[0][i] = sums.scalar.sum() * R::from_f64(self.reference_density);
+        self.shift.write(own, sums, i, out);
     }
 }

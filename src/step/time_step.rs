@@ -9,7 +9,7 @@ pub enum Limit {
     /// Sound crosses a smoothing length: `C h / (c + |u|)`.
     #[default]
     Acoustic,
-    /// Momentum diffuses over a smoothing length: `0.125 h²/ν` (Morris, Fox & Zhu 1997).
+    /// The shortest wave decays by viscosity.
     Viscous,
     /// Acceleration moves a particle: `0.25 √(h/|a|)` (Monaghan 1992).
     Force,
@@ -48,8 +48,8 @@ pub struct Limits {
     pub courant: f64,
     /// Smoothing length in m.
     pub smoothing_length: f64,
-    /// Kinematic viscosity in m²/s; 0 without.
-    pub viscosity: f64,
+    /// The longest step that viscosity allows, in s; infinite without.
+    pub viscous: f64,
     /// A fixed time step in s.
     pub fixed: Option<f64>,
 }
@@ -62,9 +62,8 @@ impl Limits {
         }
         let h = self.smoothing_length;
         let mut best = (self.courant * h / (sound_speed + speed), Limit::Acoustic);
-        let viscous = 0.125 * h * h / self.viscosity;
-        if viscous < best.0 {
-            best = (viscous, Limit::Viscous);
+        if self.viscous < best.0 {
+            best = (self.viscous, Limit::Viscous);
         }
         let force = 0.25 * (h / acceleration).sqrt();
         if force < best.0 {

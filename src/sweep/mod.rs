@@ -438,14 +438,28 @@ impl<L: Lanes, const D: usize> Geometry<L, D> {
         sums: &mut Sums<L, D>,
     ) {
         let stride = others.stride();
-        let other = Other::<L, D> { at: others.column(0).wrapping_add(k), stride };
+        let other = Other::<L, D> {
+            at: others.column(0).wrapping_add(k),
+            stride,
+        };
         // SAFETY: the buffer is closed by a whole vector of particles out of reach.
-        let separation = std::array::from_fn(|a| x[a] - unsafe { L::load(other.at.add(a * stride)) });
+        let separation =
+            std::array::from_fn(|a| x[a] - unsafe { L::load(other.at.add(a * stride)) });
         let squared = dot(&separation, &separation);
         let inside = squared.less(self.support2);
-        let q = squared.max(self.tiny).sqrt() * self.inverse_h;
+        let distance = squared.max(self.tiny).sqrt();
+        let q = distance * self.inverse_h;
         let slope = (self.slope * kernel.slope_over_q(q)).only(inside);
-        let pair = Pair { separation, squared, slope, q, inside, normalisation: self.value, kernel };
+        let pair = Pair {
+            separation,
+            squared,
+            slope,
+            distance,
+            q,
+            inside,
+            normalisation: self.value,
+            kernel,
+        };
         if WALL {
             pass.wall(&pair, &Splat(own), &other, sums);
         } else {

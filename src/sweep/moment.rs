@@ -59,4 +59,39 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
         }
         out
     }
+
+    /// The least eigenvalue of the moment matrix: 1 in the interior, small at a free surface.
+    #[inline(always)]
+    pub fn least_moment(&self) -> L::Real {
+        let half = L::Real::from_f64(0.5);
+        let (xx, yy, xy) = (
+            self.moment[0].sum(),
+            self.moment[1].sum(),
+            self.moment[2].sum(),
+        );
+        if D == 2 {
+            let (mean, difference) = (half * (xx + yy), half * (xx - yy));
+            return mean - (difference * difference + xy * xy).sqrt();
+        }
+        let (zz, yz, xz) = (
+            self.moment[3].sum(),
+            self.moment[4].sum(),
+            self.moment[5].sum(),
+        );
+        // Trigonometric solution of the cubic (Smith 1961), in double precision.
+        let [xx, yy, zz, xy, yz, xz] = [xx, yy, zz, xy, yz, xz].map(Real::to_f64);
+        let mean = (xx + yy + zz) / 3.0;
+        let off = xy * xy + yz * yz + xz * xz;
+        let p2 = (xx - mean).powi(2) + (yy - mean).powi(2) + (zz - mean).powi(2) + 2.0 * off;
+        if p2 <= 1e-20 {
+            return L::Real::from_f64(mean);
+        }
+        let p = (p2 / 6.0).sqrt();
+        let (a, b, c) = ((xx - mean) / p, (yy - mean) / p, (zz - mean) / p);
+        let (d, e, f) = (xy / p, yz / p, xz / p);
+        let half_determinant =
+            0.5 * (a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f));
+        let angle = half_determinant.clamp(-1.0, 1.0).acos() / 3.0;
+        L::Real::from_f64(mean + 2.0 * p * (angle + 2.0 * std::f64::consts::PI / 3.0).cos())
+    }
 }

@@ -1,0 +1,34 @@
+//! Moving particles by their shift.
+
+use crate::particles::{Column, Shared, for_ranges};
+use crate::simd::Real;
+
+/// Adds `shift` to `position`; gives the length of the longest one in m.
+pub fn apply_shift<R: Real, const D: usize>(
+    position: &mut [Column<f64>; D],
+    shift: &[Column<R>; D],
+) -> f64 {
+    let n = position[0].len();
+    let columns = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut position[a]));
+    let longest = for_ranges(
+        n,
+        || 0.0,
+        f64::max,
+        |range| {
+            // SAFETY: the ranges of a pass are disjoint.
+            let x = columns.map(|c| unsafe { c.range(&range) });
+            let mut longest = 0.0f64;
+            for (i, k) in range.clone().enumerate() {
+                let mut square = 0.0;
+                for a in 0..D {
+                    let s = shift[a][k].to_f64();
+                    x[a][i] += s;
+                    square += s * s;
+                }
+                longest = longest.max(square);
+            }
+            longest
+        },
+    );
+    longest.sqrt()
+}
