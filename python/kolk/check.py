@@ -186,7 +186,7 @@ def _warnings(scene: Scene, bodies: list[Body]) -> list[str]:
     if neighbours > MOST_NEIGHBOURS[scene.dimension]:
         found.append(
             f"{neighbours:.0f} neighbours per particle cost time and blur the flow: a "
-            "smoothing_ratio of 1.3 to 1.5 is usual"
+            "smoothing_ratio of 1.3 to 2 is usual"
         )
     found += _wall_warnings(scene, bodies)
     found += _probe_warnings(scene)

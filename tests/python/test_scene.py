@@ -205,7 +205,7 @@ def test_a_tank_has_its_layers_and_corners(dimension: int) -> None:
         wall=[{"name": "t", "shape": {"tank": {"from": low, "to": high, "open": ["top"]}}}],
     )
     layers = scene.wall_layers
-    assert layers == 3
+    assert layers == {2: 4, 3: 4}[dimension]
     outer = (4 + 2 * layers) ** (dimension - 1) * (4 + layers)
     assert len(body(scene, "t")) == outer - 4**dimension
 
@@ -329,12 +329,12 @@ def test_the_surface_of_hydrostatic_water_is_the_top_of_its_box() -> None:
 
 
 def test_automatic_sound_speed() -> None:
-    fall = np.sqrt(2 * GRAVITY * 0.3)
+    fall = 2 * np.sqrt(GRAVITY * 0.3)
     assert tank().sound_speed == pytest.approx(10 * fall)
     lifted = tank(
         fluid=[{"name": "water", "shape": {"box": {"from": [0.0, 0.2], "to": [0.6, 0.5]}}}]
     )
-    assert lifted.sound_speed == pytest.approx(10 * np.sqrt(2 * GRAVITY * 0.5))
+    assert lifted.sound_speed == pytest.approx(20 * np.sqrt(GRAVITY * 0.5))
     assert tank(numerics={"expected_speed": 5.0}).sound_speed == pytest.approx(50.0)
     jet = tank().replace({"fluid.water.velocity": [3.0, 4.0]})
     assert jet.sound_speed == pytest.approx(50.0)
@@ -398,11 +398,11 @@ def test_every_effect_reaches_the_engine() -> None:
     ).replace({"fluid.water.viscosity": {"artificial": 0.1, "beta": 0.2, "laminar": 1e-6}})
     config = json.loads(scene.engine_config())
     assert config["artificial_viscosity"] == {"alpha": 0.1, "beta": 0.2}
-    assert config["laminar_viscosity"] == {"kinematic": 1e-6}
+    assert config["laminar_viscosity"] == {"kinematic": 1e-6, "form": "monaghan-gingold"}
     assert config["density_diffusion"] == {"form": "fourtakas", "delta": 0.1}
     assert config["shifting"] == {"form": "sun", "free_surface": True}
-    assert config["wall"] == {"method": "dynamic", "slip": "free"}
-    assert config["smoothing_length"] == pytest.approx(0.03)
+    assert config["wall"] == {"method": "dynamic", "slip": "free", "suction": False}
+    assert config["smoothing_length"] == pytest.approx(0.04)
 
 
 # Checking
@@ -410,7 +410,7 @@ def test_every_effect_reaches_the_engine() -> None:
 
 def test_a_scene_is_described_in_words() -> None:
     text = describe(tank().replace({"fluid.water.viscosity": {"artificial": 0.02}}))
-    for part in ("water", "450 particles", "3 layers", "sound speed 24.26", "no warnings"):
+    for part in ("water", "450 particles", "4 layers", "sound speed 34.31", "no warnings"):
         assert part in text
 
 

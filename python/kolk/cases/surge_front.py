@@ -29,13 +29,15 @@ scene = Scene(
             "name": "water",
             "shape": {"box": {"from": [0.0, 0.0], "to": [A, 2 * A]}},
             "density": 1000.0,
-            "viscosity": {"artificial": 0.02},
+            "viscosity": {"artificial": 0.01, "laminar": 1e-6},
         }
     ],
     wall=[
         {
             "name": "tank",
             "shape": {"tank": {"from": [0.0, 0.0], "to": [12 * A, 3 * A], "open": ["top"]}},
+            # The thin tip feels the bed: where it slides, it runs ahead of the experiment.
+            "slip": "no",
         }
     ],
     probe=[
@@ -50,11 +52,10 @@ case = Case(
     title="Collapse of a water column",
     shows="how fast a surge runs over a dry bed",
     source="Martin and Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324: a = 57.15 mm, height 2 a",
-    reference="surge front measured for a = 1.125 and 2.25 inches, aligned at 1.44 a",
-    cost="3,200 fluid and 2,200 wall particles, about 5,400 steps",
+    reference="surge front measured for a = 2.25 inches, aligned at 1.44 a",
+    cost="3,200 fluid and 2,912 wall particles, about 5,600 steps: 15 seconds on two cores",
     scene=scene,
-    comparisons=tuple(
-        Comparison("front", "front", f"martin-moyce-{a}in", TIME, A, "front", "", ALIGNED)
-        for a in ("2.25", "1.125")
+    comparisons=(
+        Comparison("front", "front", "martin-moyce-2.25in", TIME, A, "front", "", ALIGNED),
     ),
 )

@@ -15,17 +15,22 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     if viscosity is not None and viscosity.artificial is not None:
         artificial = {"alpha": viscosity.artificial, "beta": viscosity.beta}
     if viscosity is not None and viscosity.laminar is not None:
-        laminar = {"kinematic": viscosity.laminar}
-    diffusion = shifting = wall = None
+        # Morris' form loses half of the dissipation under a free surface, and is the better one
+        # between walls (Colagrossi et al., Phys. Rev. E 84 (2011) 026705).
+        form = "monaghan-gingold" if scene.free_surface else "morris"
+        laminar = {"kinematic": viscosity.laminar, "form": form}
+    diffusion = shifting = None
+    wall: dict[str, Any] | None = None
     if numerics.density_diffusion != "none":
         diffusion = {"form": numerics.density_diffusion, "delta": numerics.delta}
-    if numerics.shifting != "none":
-        surface = numerics.free_surface
-        if surface is None:
-            surface = any(interval is None for interval in scene.periodic_axes)
-        shifting = {"form": numerics.shifting, "free_surface": surface}
+    shift = numerics.shifting
+    if shift == "auto":
+        shift = "none" if scene.free_surface else "sun"
+    if shift != "none":
+        shifting = {"form": shift, "free_surface": scene.free_surface}
     if scene.wall:
         wall = {"method": numerics.wall, "slip": scene.wall[0].slip}
+        wall["suction"] = not scene.free_surface
     return {
         "dimension": scene.dimension,
         "spacing": scene.spacing,

@@ -66,9 +66,10 @@ def hydrostatic_pressure(
 def sound_speed(expected_speed: float, drop: float, gravity: float) -> float:
     """Sound speed in m/s that keeps the flow weakly compressible.
 
-    ``c0 = max(U, sqrt(2 g H)) / 0.1``: U is the largest speed expected or given at the start, and
+    ``c0 = max(U, 2 sqrt(g H)) / 0.1``: U is the largest speed expected or given at the start, and
     H (``drop``, m) the height through which the fluid can fall, from its highest point to the
-    lowest it can reach. The second term also bounds sqrt(p/rho0) of the fluid at rest.
+    lowest it can reach. 2 sqrt(g H) is the speed of the front of a collapsing column (Ritter 1892),
+    more than that of a free fall, and bounds sqrt(p/rho0) of the fluid at rest.
     Source: Monaghan, J. Comput. Phys. 110 (1994). Zero where nothing sets a speed.
     """
-    return max(expected_speed, float(np.sqrt(2.0 * gravity * max(drop, 0.0)))) / MACH
+    return max(expected_speed, 2.0 * float(np.sqrt(gravity * max(drop, 0.0)))) / MACH

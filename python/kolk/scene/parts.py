@@ -331,10 +331,12 @@ class Numerics(Model):
     delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
         default=0.1, description="of the density diffusion"
     )
-    shifting: Literal["none", "sun", "lind"] = "none"
+    shifting: Literal["auto", "none", "sun", "lind"] = Field(
+        default="auto", description="auto: sun in flows without a free surface, else none"
+    )
     free_surface: Flag | None = Field(
         default=None,
-        description="whether shifting looks for one; by default unless all axes are periodic",
+        description="whether the fluid has one; if absent: under gravity, or without walls",
     )
     wall: Literal["adami", "dynamic"] = "adami"
     courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
@@ -361,7 +363,9 @@ class Output(Model):
     )
     fields: tuple[FieldName, ...] = Field(default=FIELDS, description="columns of a frame")
     checkpoint_every: Positive | None = Field(
-        default=None, description="s of the simulation; on interruption and at the end if absent"
+        default=None,
+        description="interval, s of the simulation, counted at frames; if absent as often as takes "
+        "at most 5 % of the running time. Always one at the start, at the end and on Ctrl-C",
     )
     pictures: Flag = True
 

@@ -13,7 +13,7 @@ spacing = 0.01                     # m, initial particle spacing: half of it cos
 gravity = [0.0, -9.81]             # leave it out and no gravity term exists
 until = 2.0                        # s
 
-# smoothing_ratio = 1.5            # smoothing length over spacing
+# smoothing_ratio = 2.0            # smoothing length over spacing
 # kernel = "wendland-c2"           # or wendland-c4, wendland-c6, cubic, quintic
 # periodic = { x = [0.0, 1.0] }    # the domain repeats along these axes
 
@@ -56,7 +56,7 @@ force = { body = "tank" }
 
 [numerics]
 density_diffusion = "antuono"      # or molteni, fourtakas, none
-shifting = "none"                  # or sun, lind
+shifting = "auto"                  # or none, sun, lind
 wall = "adami"                     # or dynamic
 
 [output]
