@@ -203,7 +203,8 @@ class WaterLevel:
     Marches along the line in steps of half a spacing and reads the share of the kernel that fluid
     fills, in relation to what the walls leave of it, so that a gauge may stand on a floor or at a
     side wall. The level is where that share first falls through 0.5, by linear interpolation. A
-    film too thin to reach 0.5 counts with its integral along the line; 0 where there is no fluid.
+    film thinner than the smoothing length, which may never reach 0.5, counts with its integral
+    along the line (`film_of`); 0 where there is no fluid.
     """
 
     quantity, unit = "level", "m"
@@ -226,22 +227,50 @@ class WaterLevel:
         self.step = 0.5 * around.spacing
         count = int(np.ceil(max(reach, 4.0 * around.smoothing_length) / self.step)) + 1
         self.points = base + self.step * np.arange(count)[:, None] * along
-        self.film = int(np.ceil(2.0 * around.smoothing_length / self.step))
+        self.film = int(np.ceil(around.smoothing_length / self.step))
         free = 1.0 - around.wall_fill(self.points)
         # Points inside a wall tell nothing about the fluid.
-        self.free = np.where(free > 0.25, free, np.inf)
+        self.free = np.where(free > 0.25, free, 0.0)
 
     def evaluate(self, simulation: Simulation) -> tuple[float, ...]:
         """Height above the base point, m."""
-        share = simulation.sample(self.points, ["fill"])["fill"] / self.free
-        return (level_of(share, self.step, self.film),)
+        fill = simulation.sample(self.points, ["fill"])["fill"]
+        return (level_of(fill, self.free, self.step, self.film),)
 
 
-def level_of(share: Floats, step: float, film: int) -> float:
-    """Level (m) on a line of filled shares `step` (m) apart; `film`: points in a kernel's reach."""
+def level_of(fill: Floats, free: Floats, step: float, film: int) -> float:
+    """Level (m) on a line of points `step` (m) apart.
+
+    fill (n,): what fluid fills of the kernel; free (n,): what walls leave of it, 0 for points that
+    do not count; film: steps in a smoothing length.
+    """
+    share = fill / np.where(free > 0.0, free, np.inf)
     wet = share >= 0.5
-    if not wet[: film + 1].any():
-        return float(np.sum(share[: 2 * film + 1]) * step)
+    surface = _surface(share, wet, step)
+    if wet[: 2 * film + 1].any() and surface > film * step:
+        return surface
+    reach = slice(0, 3 * film + 1)
+    return film_of(fill[reach], free[reach], step)
+
+
+def film_of(fill: Floats, free: Floats, step: float) -> float:
+    """Thickness (m) of the fluid between the first point and the others, from its integral.
+
+    Kernels are symmetric: fluid up to a height t fills, summed along the line, what walls leave
+    free of the kernel, summed up to t. That holds for any t, beside walls and away from them.
+    """
+    counted = np.where(free > 0.0, fill, 0.0)
+    content = float(np.sum(counted) - 0.5 * counted[0]) * step
+    if content <= 0.0:
+        return 0.0
+    room = np.concatenate([[0.0], np.cumsum(0.5 * (free[1:] + free[:-1]))]) * step
+    return float(np.interp(content, room, step * np.arange(len(room))))
+
+
+def _surface(share: Floats, wet: NDArray[np.bool_], step: float) -> float:
+    """Where the share first falls through 0.5 after it was above it, m; 0 if it never is."""
+    if not wet.any():
+        return 0.0
     start = int(np.argmax(wet))
     dry = np.flatnonzero(~wet[start:])
     if not len(dry):
