@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kolk._core import gradient as gradient
     from kolk._core import interpolate as interpolate
     from kolk._core import kernel as kernel
+    from kolk._core import laplacian as laplacian
     from kolk._core import neighbours as neighbours
     from kolk._core import particle_shift as particle_shift
     from kolk._core import tait_density as tait_density
@@ -56,6 +57,7 @@ _HOMES = {
         "gradient",
         "interpolate",
         "kernel",
+        "laplacian",
         "neighbours",
         "particle_shift",
         "tait_density",

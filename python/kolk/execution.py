@@ -98,6 +98,8 @@ class Execution:
 
     def __post_init__(self) -> None:
         self._former_seconds = 0.0
+        self._stepping = 0.0
+        """Seconds inside the calls that take steps, over all sittings."""
         self._former_timings: Timings = {}
         self._former_limits: dict[str, int] = {}
         self._initial_energy: dict[str, float] = {}
@@ -199,6 +201,7 @@ class Execution:
         self.recorder.resume(book)
         self.watch.phases = _sum_timings(self.watch.phases, book["watch"])
         self._former_seconds = float(book["seconds"])
+        self._stepping = float(book["stepping"])
         self._initial_energy = dict(book["initial_energy"])
         # The engine may or may not carry its counters along; what it shows now is not new.
         self._former_timings = _sum_timings(book["timings"], simulation.timings, -1)
@@ -220,10 +223,13 @@ class Execution:
                 self._target = target = self.schedule.after(simulation.time)
                 while simulation.time < target:
                     begun = clock.perf_counter()
-                    with interrupts.during():
-                        simulation.advance_to(target, steps)
-                    if not self.recorder.sampling:
+                    try:
+                        with interrupts.during():
+                            simulation.advance_to(target, steps)
+                    finally:
                         spent = clock.perf_counter() - begun
+                        self._stepping += spent
+                    if not self.recorder.sampling:
                         fitting = int(steps * BREATH / max(spent, 1e-6))
                         steps = max(1, min(2 * steps, fitting, MOST_STEPS))
                     self.recorder.sample()
@@ -249,6 +255,7 @@ class Execution:
             {
                 "precision": self.simulation.precision,
                 "seconds": self._seconds(),
+                "stepping": self._stepping,
                 "watch": self.watch.phases,
                 "timings": self._timings(),
                 "limits": self._limits(),
@@ -315,6 +322,7 @@ class Execution:
                 reason=self.reason,
                 initial_energy=self._initial_energy,
                 seconds=self._seconds(),
+                stepping=self._stepping,
                 engine=self._timings(),
                 outside=self.watch.phases,
                 limits=self._limits(),
@@ -331,10 +339,10 @@ class Execution:
         ]
 
     def _draw(self, result: Run) -> None:
-        from kolk.render import render_run
+        from kolk.render import missing, render_run
 
         made = render_run(result, film=True, quiet=self.quiet)
-        self.notes += missing_picture_libraries(self.simulation.dimension)
+        self.notes += missing(self.simulation.dimension)
         self._log.write(f"{len(made)} pictures in {self.folder.pictures}")
 
     def _attempt(self, what: str, action: Callable[[], None]) -> None:
@@ -344,13 +352,6 @@ class Execution:
         except Exception as error:
             self.notes.append(f"{what}: {error}")
             self._log.write(f"{what} failed\n{traceback.format_exc()}")
-
-
-def missing_picture_libraries(dimension: int) -> list[str]:
-    """What this machine lacks for the pictures of a run, a line each, and how to install it."""
-    from kolk.render import missing
-
-    return [line for line in missing() if dimension == 3 or "three-dimensional" not in line]
 
 
 def write_scene(scene: Scene, folder: RunFolder) -> None:

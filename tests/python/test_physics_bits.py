@@ -40,7 +40,7 @@ def dam(dimension: int) -> kolk.Scene:
 
 def vortex() -> kolk.Scene:
     """The periodic vortex, shifting and laminar viscosity included, coarser than its case."""
-    return kolk.load("taylor-green").replace(spacing=0.04)
+    return kolk.load("taylor-green").replace(spacing=1 / 32)
 
 
 def differing(one: kolk.Simulation, other: kolk.Simulation) -> list[str]:

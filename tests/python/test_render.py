@@ -313,6 +313,7 @@ def test_missing_says_how_to_install(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(render, "find_spec", lambda name: None)
     lines = render.missing()
     assert len(lines) == 3
+    assert render.missing(2) == [line for line in lines if "film" in line]
     assert all("kolk[pictures]" in line for line in lines)
     monkeypatch.setattr(render, "find_spec", lambda name: object())
     assert render.missing() == []

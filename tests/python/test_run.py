@@ -305,7 +305,9 @@ def test_missing_picture_libraries_are_named(tank: Path, monkeypatch: pytest.Mon
     import kolk.render
 
     monkeypatch.setattr(kolk.render, "render_run", lambda *_, **__: [])
-    monkeypatch.setattr(kolk.render, "missing", lambda: ["imageio-ffmpeg: pip install kolk[x]"])
+    monkeypatch.setattr(
+        kolk.render, "missing", lambda dimension: ["imageio-ffmpeg: pip install kolk[x]"]
+    )
     run = kolk.run("tank.toml", pictures=True, quiet=True)
     assert run.summary["notes"] == ["imageio-ffmpeg: pip install kolk[x]"]
 

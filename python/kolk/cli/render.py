@@ -21,15 +21,14 @@ def render(
     """Draw pictures and a film of a run."""
     from pathlib import Path
 
-    from kolk.execution import missing_picture_libraries
     from kolk.output.folder import newest_folder
-    from kolk.render import render_run
+    from kolk.render import missing, render_run
     from kolk.results import Run
 
     named = None if Path(run).exists() else newest_folder(run)
     found = Run(named.path if named else run)
     made = render_run(found, film=film)
-    for line in missing_picture_libraries(found.frames[0].dimension):
+    for line in missing(found.frames[0].dimension):
         print(f"kolk: {line}", file=sys.stderr)
     for path in made:
         print(path)

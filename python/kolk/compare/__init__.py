@@ -13,7 +13,7 @@ import numpy as np
 from . import records
 from .band import align, compare_band
 from .fields import compare_channel, compare_hydrostatic, compare_taylor_green
-from .front import compare_front
+from .front import ALIGNED_AT, compare_front
 from .norms import Norms, norms
 from .result import ComparisonResult
 from .series import compare_series
@@ -65,7 +65,7 @@ def _probe(run: records.RunLike, asked: Comparison, shift: float) -> list[Compar
             value - given.get("origin", 0.0),
             reference,
             *scales,
-            aligned_at=given.get("align", 1.44),
+            aligned_at=given.get("align", ALIGNED_AT),
             until=given.get("until", np.inf),
         )
     column = records.reference_column(asked)

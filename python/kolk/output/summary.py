@@ -119,20 +119,20 @@ def summary_of(
     reason: str,
     initial_energy: Mapping[str, float],
     seconds: float,
+    stepping: float,
     engine: Mapping[str, Mapping[str, float]],
     outside: Mapping[str, Mapping[str, float]],
     limits: Mapping[str, int],
 ) -> dict[str, Any]:
     """Everything that the summary says without looking at references.
 
-    seconds, limits, and the time by phase in the engine and outside it: over all sittings of a
-    resumed run.
+    seconds, limits, the seconds of them spent on steps, and the time by phase in the engine and
+    outside it: over all sittings of a resumed run.
     """
     scene = simulation.scene
     now = simulation.diagnostics
     steps, counts = simulation.step_count, simulation.particles
     total = sum(counts.values())
-    working = sum(entry["seconds"] for entry in engine.values())
     return {
         "kolk": version(),
         "outcome": outcome,
@@ -154,9 +154,10 @@ def summary_of(
             "by_limit": limits,
             "mean_time_step": simulation.time / steps if steps else None,
         },
-        "seconds": {"total": seconds, "engine": working, "phases": {**engine, **outside}},
-        # The engine's own speed, with what is written and measured meanwhile left out.
-        "particle_steps_per_second": steps * total / max(working, 1e-9),
+        "seconds": {"total": seconds, "engine": stepping, "phases": {**engine, **outside}},
+        # The engine's own speed. Its phases also hold what it does for probes and frames, so that
+        # their sum would not do.
+        "particle_steps_per_second": steps * total / max(stepping, 1e-9),
         "memory": simulation.memory,
         "energy": energy_budget(initial_energy, now),
         "momentum": now["momentum"],

@@ -13,19 +13,21 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from kolk.compare.records import RunLike
 
-_LIBRARIES = {
-    "imageio_ffmpeg": "films as mp4 (without it: gif)",
+_LIBRARIES = {"imageio_ffmpeg": "films as mp4 (without it: gif)"}
+_LIBRARIES_3D = {
     "pyvista": "free surfaces of three-dimensional runs (without it: particles)",
     "pysplashsurf": "free surfaces of three-dimensional runs (without it: particles)",
 }
 
 
-def missing() -> list[str]:
-    """One line per picture library that is not installed: what it draws and how to install it."""
+def missing(dimension: int = 3) -> list[str]:
+    """One line per picture library that a run of this dimension would use and that is not
+    installed: what it draws and how to install it."""
+    wanted = {**_LIBRARIES, **(_LIBRARIES_3D if dimension == 3 else {})}
     return [
         f"{name.replace('_', '-')} is not installed: it draws {what}; "
         "install it with  pip install 'kolk[pictures]'"
-        for name, what in _LIBRARIES.items()
+        for name, what in wanted.items()
         if find_spec(name) is None
     ]
 
