@@ -258,6 +258,13 @@ impl Cells {
         self.offsets[first * self.parts] as usize..self.offsets[end * self.parts] as usize
     }
 
+    /// The particles of the parts `first..end` of a cell.
+    #[inline(always)]
+    pub fn bins(&self, cell: usize, first: usize, end: usize) -> Range<usize> {
+        let base = cell * self.parts;
+        self.offsets[base + first] as usize..self.offsets[base + end] as usize
+    }
+
     /// The first cell that starts at or after particle `index`.
     pub fn cell_from(&self, index: usize) -> usize {
         let bin = self.offsets.partition_point(|&o| (o as usize) < index);

@@ -44,7 +44,7 @@ impl<T> Shared<T> {
 
 /// The `k`-th grain of `n` particles.
 #[inline]
-pub fn grain(k: usize, n: usize) -> Range<usize> {
+fn grain(k: usize, n: usize) -> Range<usize> {
     k * GRAIN..((k + 1) * GRAIN).min(n)
 }
 

@@ -145,24 +145,28 @@ impl<R: Real, const D: usize> Solver<R, D> {
             .artificial_viscosity
             .map(|v| ArtificialViscosity::new(v.alpha, v.beta, c.sound_speed, h, rho));
         let laminar = c.laminar_viscosity.map(|v| (v.form, v.kinematic));
+        // Between walls, where pressure is everywhere and shifting keeps the order, particles need no core.
+        let core = Contact::fluid(c.spacing, D, c.sound_speed, rho);
         match (artificial, laminar) {
-            (None, None) => self.forces_with(()),
-            (Some(a), None) => self.forces_with(a),
+            (None, None) => self.forces_with(core),
+            (Some(a), None) => self.forces_with((core, a)),
             (None, Some((ViscosityForm::Morris, nu))) => self.forces_with(Morris::new(nu, h, rho)),
             (None, Some((ViscosityForm::MonaghanGingold, nu))) => {
-                self.forces_with(MonaghanGingold::new(nu, h, rho));
+                self.forces_with((core, MonaghanGingold::new(nu, h, rho)));
             }
             // Artificial viscosity means a free surface: one form is enough beside it.
-            (Some(a), Some((_, nu))) => self.forces_with((a, MonaghanGingold::new(nu, h, rho))),
+            (Some(a), Some((_, nu))) => {
+                self.forces_with((core, (a, MonaghanGingold::new(nu, h, rho))))
+            }
         }
         self.timers.book(Phase::Forces);
     }
 
-    fn forces_with<V: PairTerm<R, D>>(&mut self, viscosity: V) {
+    fn forces_with<V: PairTerm<R, D>>(&mut self, effects: V) {
         if self.fluid.gradient.is_some() {
-            self.run_forces(viscosity, DensityGradient);
+            self.run_forces(effects, DensityGradient);
         } else {
-            self.run_forces(viscosity, ());
+            self.run_forces(effects, ());
         }
     }
 
@@ -174,8 +178,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let pass = Forces {
             viscosity,
             gradient,
-            contact: Contact::new(
+            contact: Contact::wall(
                 self.config.spacing,
+                D,
                 self.config.sound_speed,
                 self.config.reference_density,
             ),

@@ -15,7 +15,7 @@ use crate::walls::{Slip, WallMethod};
 use std::time::{Duration, Instant};
 
 /// Cells are wider than the support radius by this share, so that the order lasts for some steps.
-const SKIN: f64 = 0.1;
+const SKIN: f64 = 0.06;
 /// Largest stable Courant number of the symplectic step, times a margin.
 const COURANT: f64 = 0.5;
 
@@ -110,7 +110,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 gravity: config.gravity(),
                 eos: super::assembly::equation_of_state(&config),
             },
-            sweeper: Sweeper::new(threads, h),
+            sweeper: {
+                let per_cell = grid.edge().iter().map(|e| e / config.spacing).product();
+                Sweeper::new(threads, h, per_cell, Grid::<D>::PARTS)
+            },
             limits: Limits {
                 courant: config.courant.unwrap_or(COURANT),
                 smoothing_length: h,

@@ -23,8 +23,9 @@ use std::sync::{Mutex, PoisonError};
 
 /// Fields that a source can carry (`slot`).
 pub const SLOTS: usize = 9;
-/// Particles that share one selection of candidates.
-const CLUSTER: usize = 8;
+/// Particles that should share one selection of candidates: a larger cluster selects more that not all of it need, a
+/// smaller one selects too often.
+const CLUSTER: f64 = 6.0;
 /// Least particles of one task.
 const TASK: usize = 512;
 
@@ -140,6 +141,7 @@ struct Workspace<R> {
 pub struct Sweeper<R> {
     workspaces: Vec<Mutex<Workspace<R>>>,
     smoothing_length: f64,
+    parts_per_cluster: usize,
 }
 
 /// One pass over a target set.
@@ -157,17 +159,24 @@ pub struct Sweep<'a, R, P, const D: usize> {
 }
 
 impl<R: Real> Sweeper<R> {
-    /// Buffers for `threads` threads.
-    pub fn new(threads: usize, smoothing_length: f64) -> Self {
+    /// Buffers for `threads` threads, and clusters for `per_cell` particles in each cell of `parts` parts.
+    pub fn new(threads: usize, smoothing_length: f64, per_cell: f64, parts: usize) -> Self {
         let workspace = || {
             Mutex::new(Workspace {
                 candidates: [Buffer::new(), Buffer::new()],
                 selected: [Buffer::new(), Buffer::new()],
             })
         };
+        let mut parts_per_cluster = parts;
+        while parts_per_cluster > 1
+            && per_cell * (parts_per_cluster as f64) > 1.4 * CLUSTER * parts as f64
+        {
+            parts_per_cluster /= 2;
+        }
         Sweeper {
             workspaces: (0..threads.max(1)).map(|_| workspace()).collect(),
             smoothing_length,
+            parts_per_cluster,
         }
     }
 
@@ -229,6 +238,7 @@ impl<R: Real> Sweeper<R> {
                 workspace: &mut *workspace,
                 out,
                 kernel,
+                parts_per_cluster: self.parts_per_cluster,
             });
             return;
         }
@@ -273,6 +283,7 @@ struct Slab<'a, 'b, R, P, const D: usize> {
     workspace: &'a mut Workspace<R>,
     out: Output<'b, R>,
     kernel: KernelName,
+    parts_per_cluster: usize,
 }
 
 impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
@@ -300,62 +311,65 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
         } = &mut *self.workspace;
         let sources = [*fluid, *wall];
         for cell in self.cells.clone() {
-            let particles = target.cells.particles(cell, cell + 1);
             let mut frame: Option<[f64; D]> = None;
-            let mut first = particles.start;
-            while first < particles.end {
-                let at = |i: usize| -> [f64; D] { std::array::from_fn(|a| target.position[a][i]) };
-                let near = |frame: &[f64; D], i: usize| {
-                    // Written so that a position that is not a number is near nothing.
-                    (0..D).all(|a| (target.position[a][i] - frame[a]).abs() <= 2.0 * edge[a])
-                };
-                let origin = match frame {
-                    Some(origin) if near(&origin, first) => origin,
-                    _ => {
-                        let origin = at(first);
-                        for (buffer, source) in candidates.iter_mut().zip(sources) {
-                            if let Some(source) = source {
-                                buffer.gather::<L, D>(source, grid, cell, &origin);
+            for part in (0..Grid::<D>::PARTS).step_by(self.parts_per_cluster) {
+                let particles = target.cells.bins(cell, part, part + self.parts_per_cluster);
+                let mut first = particles.start;
+                while first < particles.end {
+                    let at =
+                        |i: usize| -> [f64; D] { std::array::from_fn(|a| target.position[a][i]) };
+                    let near = |frame: &[f64; D], i: usize| {
+                        // Written so that a position that is not a number is near nothing.
+                        (0..D).all(|a| (target.position[a][i] - frame[a]).abs() <= 2.0 * edge[a])
+                    };
+                    let origin = match frame {
+                        Some(origin) if near(&origin, first) => origin,
+                        _ => {
+                            let origin = at(first);
+                            for (buffer, source) in candidates.iter_mut().zip(sources) {
+                                if let Some(source) = source {
+                                    buffer.gather::<L, D>(source, grid, cell, &origin);
+                                }
                             }
+                            frame = Some(origin);
+                            origin
                         }
-                        frame = Some(origin);
-                        origin
+                    };
+                    let mut end = first + 1;
+                    while end < particles.end && near(&origin, end) {
+                        end += 1;
                     }
-                };
-                let mut end = first + 1;
-                while end < particles.end && end < first + CLUSTER && near(&origin, end) {
-                    end += 1;
+                    let relative = |i: usize| -> [R; D] {
+                        std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
+                    };
+                    let mut low = relative(first);
+                    let mut high = low;
+                    for i in first + 1..end {
+                        let x = relative(i);
+                        for a in 0..D {
+                            low[a] = Lanes::min(x[a], low[a]);
+                            high[a] = Lanes::max(x[a], high[a]);
+                        }
+                    }
+                    for s in 0..2 {
+                        if let Some(source) = sources[s] {
+                            selected[s].select::<L, D>(&candidates[s], source, &low, &high, reach);
+                        }
+                    }
+                    for i in first..end {
+                        let own = target.own(i);
+                        let x = relative(i).map(L::splat);
+                        let mut sums = Sums::zero();
+                        if fluid.is_some() {
+                            geometry.add::<P, false>(pass, &x, &own, &selected[0], &mut sums);
+                        }
+                        if wall.is_some() {
+                            geometry.add::<P, true>(pass, &x, &own, &selected[1], &mut sums);
+                        }
+                        pass.finish(&own, &sums, i - start, &mut self.out);
+                    }
+                    first = end;
                 }
-                let relative = |i: usize| -> [R; D] {
-                    std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
-                };
-                let mut low = relative(first);
-                let mut high = low;
-                for i in first + 1..end {
-                    let x = relative(i);
-                    for a in 0..D {
-                        low[a] = Lanes::min(x[a], low[a]);
-                        high[a] = Lanes::max(x[a], high[a]);
-                    }
-                }
-                for s in 0..2 {
-                    if let Some(source) = sources[s] {
-                        selected[s].select::<L, D>(&candidates[s], source, &low, &high, reach);
-                    }
-                }
-                for i in first..end {
-                    let own = target.own(i);
-                    let x = relative(i).map(L::splat);
-                    let mut sums = Sums::zero();
-                    if fluid.is_some() {
-                        geometry.add::<P, false>(pass, &x, &own, &selected[0], &mut sums);
-                    }
-                    if wall.is_some() {
-                        geometry.add::<P, true>(pass, &x, &own, &selected[1], &mut sums);
-                    }
-                    pass.finish(&own, &sums, i - start, &mut self.out);
-                }
-                first = end;
             }
         }
     }
@@ -447,14 +461,12 @@ impl<L: Lanes, const D: usize> Geometry<L, D> {
             std::array::from_fn(|a| x[a] - unsafe { L::load(other.at.add(a * stride)) });
         let squared = dot(&separation, &separation);
         let inside = squared.less(self.support2);
-        let distance = squared.max(self.tiny).sqrt();
-        let q = distance * self.inverse_h;
+        let q = squared.max(self.tiny).sqrt() * self.inverse_h;
         let slope = (self.slope * kernel.slope_over_q(q)).only(inside);
         let pair = Pair {
             separation,
             squared,
             slope,
-            distance,
             q,
             inside,
             normalisation: self.value,

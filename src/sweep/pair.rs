@@ -26,7 +26,6 @@ pub struct Pair<L: Lanes, const D: usize> {
     pub squared: L,
     /// `F` of `∇W = F (r_i - r_j)`, zero out of reach.
     pub slope: L,
-    pub(super) distance: L,
     pub(super) q: L,
     pub(super) inside: L::Mask,
     pub(super) normalisation: L,
@@ -34,12 +33,6 @@ pub struct Pair<L: Lanes, const D: usize> {
 }
 
 impl<L: Lanes, const D: usize> Pair<L, D> {
-    /// `|r_i - r_j|`, at least 1e-9 h.
-    #[inline(always)]
-    pub fn distance(&self) -> L {
-        self.distance
-    }
-
     /// `W`, zero out of reach.
     #[inline(always)]
     pub fn weight(&self) -> L {
