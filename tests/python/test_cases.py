@@ -48,6 +48,11 @@ def test_the_stated_particles_are_there_and_nothing_warns(name: str) -> None:
             stated = re.search(r"([\d,]+) wall", case.cost)
         there = sum(b.particles for b in report.bodies if b.kind == kind)
         assert there == pytest.approx(float(stated[1].replace(",", "")) if stated else 0, rel=0.01)
+    steps = re.search(r"about ([\d,]+) steps: [\d]+ (?:seconds|minutes) on two cores", case.cost)
+    assert steps is not None
+    # The estimate of the start; a flow that grows faster takes more of them.
+    smallest = case.scene.until / report.time_step
+    assert 0.95 * smallest < float(steps[1].replace(",", "")) < 1.25 * smallest
 
 
 @pytest.mark.parametrize("name", NAMES)

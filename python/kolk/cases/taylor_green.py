@@ -42,7 +42,7 @@ case = Case(
     shows="how truly viscosity acts, and whether particles stay evenly spread",
     source="Taylor and Green, Proc. R. Soc. A 158 (1937) 499-521, Re = 100, jittered start",
     reference="the exact solution: velocity decays as exp(-8 pi^2 t / Re)",
-    cost="2,500 fluid particles, about 1,100 steps: 5 seconds on two cores",
+    cost="2,500 fluid particles, about 1,100 steps: 2 seconds on two cores",
     scene=scene,
     comparisons=(
         Comparison(
