@@ -5,6 +5,7 @@ import json
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -16,6 +17,7 @@ import kolk
 from kolk.errors import InstabilityError, RunError
 from kolk.execution import Schedule
 from kolk.output.vtkhdf import FieldsFile
+from kolk.probes import SurgeFront
 from kolk.simulation import Simulation
 
 
@@ -50,6 +52,27 @@ def test_a_run_leaves_its_folder(tank: Path) -> None:
     assert len(run.history) == len(run.frames)
     with pytest.raises(KeyError, match="'P', 'level'"):
         run.probes["missing"]
+
+
+def test_the_speed_is_that_of_the_steps(tank: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    slow = SurgeFront.evaluate
+
+    def evaluate(self: SurgeFront, simulation: Simulation) -> tuple[float, ...]:
+        time.sleep(0.01)
+        return slow(self, simulation)
+
+    monkeypatch.setattr(SurgeFront, "evaluate", evaluate)
+    run = kolk.run("tank.toml", quiet=True)
+    summary, seconds = run.summary, run.summary["seconds"]
+    probes = seconds["phases"]["probes"]["seconds"]
+    assert probes > 0.01 * len(run.probes["front"])
+    assert 0.0 < seconds["engine"] < seconds["total"] - probes
+    work = summary["steps"]["total"] * summary["particles"]["total"]
+    assert summary["particle_steps_per_second"] == pytest.approx(work / seconds["engine"])
+
+    spent = seconds["engine"]
+    more = kolk.run(kolk.load("tank.toml").replace(until=0.12), run.folder, resume=True, quiet=True)
+    assert more.summary["seconds"]["engine"] > spent
 
 
 def test_frames_hold_the_bodies(tank: Path) -> None:

@@ -155,8 +155,8 @@ def summary_of(
             "mean_time_step": simulation.time / steps if steps else None,
         },
         "seconds": {"total": seconds, "engine": stepping, "phases": {**engine, **outside}},
-        # The engine's own speed. Its phases also hold what it does for probes and frames, so that
-        # their sum would not do.
+        # The calls that take steps as a user's clock sees them; what is measured and written
+        # between them left out.
         "particle_steps_per_second": steps * total / max(stepping, 1e-9),
         "memory": simulation.memory,
         "energy": energy_budget(initial_energy, now),
