@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 from kolk.check import check
 from kolk.errors import ArrayError, SceneError
 from kolk.scene import Box, Fluid, Scene, Wall, load, loads, schema, template
-from scenes import GRAVITY, body, tank
+from tanks import GRAVITY, body, tank
 
 # Files
 

@@ -11,7 +11,7 @@ import pytest
 import kolk
 from kolk.check import check, describe, picture
 from kolk.scene import Scene, load, loads, material
-from scenes import GRAVITY, body, tank
+from tanks import GRAVITY, body, tank
 
 DROP = {
     "name": "water",
