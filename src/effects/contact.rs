@@ -1,23 +1,27 @@
 //! Contact: what keeps particles apart, and out of walls, where pressure does not.
 
 use super::PairTerm;
-use crate::simd::{Lanes, Real};
-use crate::sweep::{Other, Pair, Splat, Sums};
+use crate::simd::{Lanes, Real, dot};
+use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
 
 /// Strength in units of `c0²`: particles that approach at a tenth of the speed of sound are kept apart.
 const STRENGTH: f64 = 0.3;
+/// Share of the approach taken up, in units of `Δp c0`: about critical damping for that strength.
+const DAMPING: f64 = 7.0;
 
 /// A soft core: the force density `ρ0 k c0² (V_j/Δp^D) (1 - r²/d²) r_ij / Δp²` between particles nearer than `d`.
 ///
 /// Pressure keeps a fluid from clumping on the average; in splashes, where it vanishes, pairs could close up to nothing
 /// and single particles could pass between those of a wall. The core is not felt by particles in order: `d` is 0.6 Δp
 /// between fluid particles, and 0.9 Δp from wall particles, which half a spacing behind the surface are a spacing away.
-/// Conserves momentum and energy. In the manner of the collision models of particle methods (Koshizuka, Nobe & Oka
+/// A dashpot along the line of centres takes up the approach, so that what hits a wall does not bounce. Conserves linear
+/// and angular momentum; dissipates kinetic energy. In the manner of the collision models of particle methods (Koshizuka, Nobe & Oka
 /// 1998) and of penalty contact in finite elements.
 #[derive(Clone, Copy, Debug)]
 pub struct Contact {
     inverse_reach2: f64,
     strength: f64,
+    damping: f64,
 }
 
 impl Contact {
@@ -36,6 +40,7 @@ impl Contact {
         Contact {
             inverse_reach2: 1.0 / (reach * reach),
             strength: STRENGTH * c0 * c0 * reference_density / spacing.powi(2 + dimension as i32),
+            damping: DAMPING / (c0 * spacing),
         }
     }
 }
@@ -45,12 +50,15 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Contact {
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
-        _own: &Splat<L, D>,
+        own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     ) {
         let depth = L::constant(1.0) - pair.squared * L::constant(self.inverse_reach2);
-        let push = L::constant(self.strength) * other.volume() * depth.max(L::zero());
+        let approach = dot(&relative_velocity(own, other), &pair.separation);
+        // Never a pull: a dashpot must not hold together what parts.
+        let dashpot = (L::constant(1.0) - L::constant(self.damping) * approach).max(L::zero());
+        let push = L::constant(self.strength) * other.volume() * depth.max(L::zero()) * dashpot;
         for a in 0..D {
             sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
         }

@@ -47,6 +47,22 @@ impl<R: Real, const D: usize> PairTerm<R, D> for () {
     }
 }
 
+/// An effect that depends on the walls of a scene: one test per vector.
+impl<R: Real, A: PairTerm<R, D>, const D: usize> PairTerm<R, D> for Option<A> {
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>>(
+        &self,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        sums: &mut Sums<L, D>,
+    ) {
+        if let Some(effect) = self {
+            effect.add(pair, own, other, sums);
+        }
+    }
+}
+
 /// Two effects together.
 impl<R: Real, A: PairTerm<R, D>, B: PairTerm<R, D>, const D: usize> PairTerm<R, D> for (A, B) {
     #[inline(always)]

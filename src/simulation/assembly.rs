@@ -145,38 +145,47 @@ impl<R: Real, const D: usize> Solver<R, D> {
             .artificial_viscosity
             .map(|v| ArtificialViscosity::new(v.alpha, v.beta, c.sound_speed, h, rho));
         let laminar = c.laminar_viscosity.map(|v| (v.form, v.kinematic));
-        // Between walls, where pressure is everywhere and shifting keeps the order, particles need no core.
+        // Between walls, where pressure is everywhere and shifting keeps the order, particles need no core. Artificial
+        // viscosity is for the inside of a fluid: it has no part in the friction at a wall.
         let core = Contact::fluid(c.spacing, D, c.sound_speed, rho);
+        let no_slip = c.wall.is_some_and(|w| w.slip == Slip::No);
         match (artificial, laminar) {
-            (None, None) => self.forces_with(core),
-            (Some(a), None) => self.forces_with((core, a)),
-            (None, Some((ViscosityForm::Morris, nu))) => self.forces_with(Morris::new(nu, h, rho)),
+            (None, None) => self.forces_with(core, ()),
+            (Some(a), None) => self.forces_with((core, a), ()),
+            (None, Some((ViscosityForm::Morris, nu))) => {
+                let viscosity = Morris::new(nu, h, rho);
+                self.forces_with(viscosity, no_slip.then_some(viscosity));
+            }
             (None, Some((ViscosityForm::MonaghanGingold, nu))) => {
-                self.forces_with((core, MonaghanGingold::new(nu, h, rho)));
+                let viscosity = MonaghanGingold::new(nu, h, rho);
+                self.forces_with((core, viscosity), no_slip.then_some(viscosity));
             }
             // Artificial viscosity means a free surface: one form is enough beside it.
             (Some(a), Some((_, nu))) => {
-                self.forces_with((core, (a, MonaghanGingold::new(nu, h, rho))))
+                let viscosity = MonaghanGingold::new(nu, h, rho);
+                self.forces_with((core, (a, viscosity)), no_slip.then_some(viscosity));
             }
         }
         self.timers.book(Phase::Forces);
     }
 
-    fn forces_with<V: PairTerm<R, D>>(&mut self, effects: V) {
+    fn forces_with<V: PairTerm<R, D>, W: PairTerm<R, D>>(&mut self, effects: V, friction: W) {
         if self.fluid.gradient.is_some() {
-            self.run_forces(effects, DensityGradient);
+            self.run_forces(effects, friction, DensityGradient);
         } else {
-            self.run_forces(effects, ());
+            self.run_forces(effects, friction, ());
         }
     }
 
-    fn run_forces<V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm>(
+    fn run_forces<V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm>(
         &mut self,
-        viscosity: V,
+        effects: V,
+        friction: W,
         gradient: G,
     ) {
         let pass = Forces {
-            viscosity,
+            effects,
+            friction,
             gradient,
             contact: Contact::wall(
                 self.config.spacing,
@@ -184,7 +193,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 self.config.sound_speed,
                 self.config.reference_density,
             ),
-            no_slip: self.config.wall.is_some_and(|w| w.slip == Slip::No),
             specific_volume: 1.0 / self.config.reference_density,
         };
         let fluid = &mut self.fluid;

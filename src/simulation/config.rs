@@ -46,6 +46,10 @@ pub struct Config {
     /// Density diffusion.
     #[serde(default)]
     pub density_diffusion: Option<DensityDiffusionConfig>,
+    /// Coefficient of the acoustic damper, in units of `h c0`: a bulk viscosity that takes up sound and leaves the
+    /// flow of an incompressible fluid alone (Sun, Pilloton, Antuono & Colagrossi 2023).
+    #[serde(default)]
+    pub acoustic_damper: Option<f64>,
     /// Particle shifting.
     #[serde(default)]
     pub shifting: Option<ShiftingConfig>,
@@ -210,6 +214,9 @@ impl Config {
         }
         if let Some(d) = self.density_diffusion {
             not_negative("density_diffusion.delta", d.delta)?;
+        }
+        if let Some(a) = self.acoustic_damper {
+            not_negative("acoustic_damper", a)?;
         }
         if let Some(c) = self.courant {
             positive("courant", c)?;

@@ -108,7 +108,16 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 bytes_per_particle: if gradient { D * real } else { 0 },
                 ..effect("density diffusion", c.density_diffusion.is_some())
             },
-            effect("particle shifting", c.shifting.is_some()),
+            effect("acoustic damper", c.acoustic_damper.is_some()),
+            EffectState {
+                columns: if c.shifting.is_some() {
+                    vec!["shift"]
+                } else {
+                    Vec::new()
+                },
+                bytes_per_particle: if c.shifting.is_some() { D * real } else { 0 },
+                ..effect("particle shifting", c.shifting.is_some())
+            },
             effect("walls", self.wall.is_some()),
         ]
     }

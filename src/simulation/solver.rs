@@ -109,6 +109,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             motion: Motion {
                 gravity: config.gravity(),
                 eos: super::assembly::equation_of_state(&config),
+                bulk_viscosity: config.acoustic_damper.unwrap_or(0.0) * h * config.sound_speed,
             },
             sweeper: {
                 let per_cell = grid.edge().iter().map(|e| e / config.spacing).product();

@@ -18,6 +18,8 @@ pub struct Motion<const D: usize> {
     pub gravity: [f64; D],
     /// Equation of state.
     pub eos: AnyEos,
+    /// Bulk viscosity over density in m²/s, which damps sound: `p + ν_b dρ/dt`. 0 without.
+    pub bulk_viscosity: f64,
 }
 
 /// Largest values after a step, for the next time step and for the guard.
@@ -117,6 +119,7 @@ impl<const D: usize> Motion<D> {
         let columns = Columns::new(fluid);
         let (acceleration, rate, mass) = (&fluid.acceleration, &fluid.density_rate, &fluid.mass);
         let half = 0.5 * dt;
+        let damper = R::from_f64(self.bulk_viscosity);
         for_ranges(
             n,
             || (),
@@ -144,7 +147,8 @@ impl<const D: usize> Motion<D> {
                         &mut *part.condensation,
                         &mut *part.volume,
                     );
-                    part.pressure[i] = self.eos.pressure(part.condensation[i]);
+                    let pressure: R = self.eos.pressure(part.condensation[i]);
+                    part.pressure[i] = pressure + damper * rate[i];
                 }
             },
         );

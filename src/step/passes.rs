@@ -4,16 +4,16 @@ use crate::effects::{Contact, Continuity, DensityGradient, PairTerm, Pressure, S
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
 
-/// Acceleration by pressure and by the effects `V` (viscosities); with `G`, the gradient of the condensation too.
-pub struct Forces<V, G> {
-    /// Viscous effects.
-    pub viscosity: V,
+/// Acceleration by pressure and by the effects `V`, at walls by `W`; with `G`, the gradient of the condensation too.
+pub struct Forces<V, W, G> {
+    /// Effects between fluid particles.
+    pub effects: V,
+    /// Friction between fluid and a wall to which it sticks, or `()`.
+    pub friction: W,
     /// `DensityGradient` or `()`.
     pub gradient: G,
     /// What keeps the fluid out of walls.
     pub contact: Contact,
-    /// Whether viscosity acts between fluid and wall.
-    pub no_slip: bool,
     /// `1/ρ0`.
     pub specific_volume: f64,
 }
@@ -30,8 +30,13 @@ impl GradientTerm for DensityGradient {
     const PRESENT: bool = true;
 }
 
-impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usize> Pass<R, D>
-    for Forces<V, G>
+impl<
+    R: Real,
+    V: PairTerm<R, D>,
+    W: PairTerm<R, D>,
+    G: PairTerm<R, D> + GradientTerm,
+    const D: usize,
+> Pass<R, D> for Forces<V, W, G>
 {
     #[inline(always)]
     fn fluid<L: Lanes<Real = R>>(
@@ -42,7 +47,7 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
         sums: &mut Sums<L, D>,
     ) {
         Pressure.add(pair, own, other, sums);
-        self.viscosity.add(pair, own, other, sums);
+        self.effects.add(pair, own, other, sums);
         self.gradient.add(pair, own, other, sums);
     }
 
@@ -56,9 +61,7 @@ impl<R: Real, V: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm, const D: usiz
     ) {
         Pressure.add(pair, own, other, sums);
         self.contact.add(pair, own, other, sums);
-        if self.no_slip {
-            self.viscosity.add(pair, own, other, sums);
-        }
+        self.friction.add(pair, own, other, sums);
     }
 
     #[inline(always)]

@@ -25,9 +25,12 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         diffusion = {"form": numerics.density_diffusion, "delta": numerics.delta}
     shift = numerics.shifting
     if shift == "auto":
-        shift = "none" if scene.free_surface else "sun"
+        shift = "sun"
     if shift != "none":
         shifting = {"form": shift, "free_surface": scene.free_surface}
+    damper = numerics.acoustic_damper
+    if damper == "auto":
+        damper = 0.3 if scene.free_surface else 0.0
     if scene.wall:
         wall = {"method": numerics.wall, "slip": scene.wall[0].slip}
         wall["suction"] = not scene.free_surface
@@ -46,6 +49,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "artificial_viscosity": artificial,
         "laminar_viscosity": laminar,
         "density_diffusion": diffusion,
+        "acoustic_damper": damper or None,
         "shifting": shifting,
         "wall": wall,
         "courant": numerics.courant,

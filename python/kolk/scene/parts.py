@@ -332,7 +332,11 @@ class Numerics(Model):
         default=0.1, description="of the density diffusion"
     )
     shifting: Literal["auto", "none", "sun", "lind"] = Field(
-        default="auto", description="auto: sun in flows without a free surface, else none"
+        default="auto", description="auto: sun"
+    )
+    acoustic_damper: Annotated[Real, Field(ge=0, le=0.5)] | Literal["auto"] = Field(
+        default="auto",
+        description="bulk viscosity over h c0, against sound; auto: 0.3 under a free surface, else 0",
     )
     free_surface: Flag | None = Field(
         default=None,
