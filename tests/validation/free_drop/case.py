@@ -105,7 +105,7 @@ case = Case(
     reference="Linear and angular momentum do not change: the largest component of their change.",
     unit="R/Δp in 2D (half of it in 3D)",
     short=(20,),
-    full=(20, 40),
+    full=(20,),
     run=run,
     draw=draw,
 )
