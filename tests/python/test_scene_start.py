@@ -91,7 +91,7 @@ def test_an_absent_effect_is_null() -> None:
                     "sound_speed": 10,
                 }
             ],
-            numerics={"density_diffusion": "none"},
+            numerics={"density_diffusion": "none", "shifting": "none", "acoustic_damper": 0},
         ).engine_config()
     )
     for key in (
@@ -99,6 +99,7 @@ def test_an_absent_effect_is_null() -> None:
         "artificial_viscosity",
         "laminar_viscosity",
         "density_diffusion",
+        "acoustic_damper",
         "shifting",
         "wall",
         "courant",
@@ -140,7 +141,8 @@ def test_what_a_free_surface_decides(scene: Scene, surface: bool) -> None:
     assert scene.free_surface is surface
     config = json.loads(scene.engine_config())
     assert config["laminar_viscosity"]["form"] == ("monaghan-gingold" if surface else "morris")
-    assert config["shifting"] == (None if surface else {"form": "sun", "free_surface": False})
+    assert config["shifting"] == {"form": "sun", "free_surface": surface}
+    assert config["acoustic_damper"] == (0.3 if surface else None)
     if scene.wall:
         assert config["wall"]["suction"] is not surface
 

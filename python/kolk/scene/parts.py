@@ -336,7 +336,8 @@ class Numerics(Model):
     )
     acoustic_damper: Annotated[Real, Field(ge=0, le=0.5)] | Literal["auto"] = Field(
         default="auto",
-        description="bulk viscosity over h c0, against sound; auto: 0.3 under a free surface, else 0",
+        description="bulk viscosity over h c0 that takes up sound; auto: 0.3 in flows with a free "
+        "surface, else 0",
     )
     free_surface: Flag | None = Field(
         default=None,

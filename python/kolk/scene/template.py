@@ -57,6 +57,7 @@ force = { body = "tank" }
 [numerics]
 density_diffusion = "antuono"      # or molteni, fourtakas, none
 shifting = "auto"                  # or none, sun, lind
+acoustic_damper = "auto"           # or a number, 0 for none: takes up sound
 wall = "adami"                     # or dynamic
 
 [output]
