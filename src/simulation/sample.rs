@@ -21,7 +21,8 @@ pub struct Sample<const D: usize> {
 impl<R: Real, const D: usize> Solver<R, D> {
     /// Weighted means over the fluid in reach of each point (Shepard 1968), zero where there is none. Pressure is
     /// carried to the point along the hydrostatic gradient, `Σ V (p + ρ g·(x - x_j)) W / Σ V W`, so that a probe may
-    /// stand on a wall: the fluid at rest is read exactly.
+    /// stand on a wall: the fluid at rest is read exactly. Where neither fluid nor wall fills the support, the rest is
+    /// air without pressure: a sensor that a jet has only begun to wet reads the mean over its neighbourhood.
     pub fn sample(&self, points: &[[f64; D]]) -> Vec<Sample<D>> {
         points.par_iter().map(|x| self.sample_point(x)).collect()
     }
@@ -70,11 +71,36 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         if sum.fill > 1e-12 {
-            sum.pressure /= sum.fill;
+            // Particles in disorder fill a support to within some per cent: less than 0.9 means air.
+            let free = 1.0 - self.wall_fill(&at);
+            sum.pressure /= sum.fill.max(0.9 * free);
             sum.density /= sum.fill;
             sum.velocity = sum.velocity.map(|v| v / sum.fill);
         }
         sum
+    }
+
+    /// The share of the support at a point that walls fill.
+    fn wall_fill(&self, at: &[f64; D]) -> f64 {
+        let Some(wall) = &self.wall else { return 0.0 };
+        let (h, volume) = (
+            self.config.smoothing_length,
+            1.0 / self.config.reference_density,
+        );
+        let reach2 = (h * self.kernel.support()).powi(2);
+        let cell = self.grid.bin(at) as usize / crate::neighbours::Grid::<D>::PARTS;
+        let mut fill = 0.0;
+        for run in self.grid.around(cell).iter() {
+            for j in wall.cells.particles(run.first, run.end) {
+                let r2: f64 = (0..D)
+                    .map(|a| (at[a] - wall.position[a][j] - run.shift[a]).powi(2))
+                    .sum();
+                if r2 < reach2 {
+                    fill += wall.mass[j].to_f64() * volume * self.kernel.value(D, r2.sqrt(), h);
+                }
+            }
+        }
+        fill
     }
 
     /// Force and moment about the origin that the fluid's pressure exerts on the wall particles `ids`, by action and
