@@ -124,7 +124,7 @@ def summary() -> str:
         cells = [
             f"[{case.title}](#{anchor(case.title)})",
             f"{case.unit} = {finest.resolution}",
-            f"{first.name}: {first.shown(first.value)}",
+            f"{cell(first.name)}: {first.shown(first.value)}",
             order(levels),
             f"{sum(bounds)} of {len(bounds)} kept" if bounds else "",
             f"{sum(goals)} of {len(goals)} met" if goals else "",
@@ -147,7 +147,7 @@ def section(name: str, case: Case, machine: str, levels: Sequence[Level]) -> str
     for row, figure in enumerate(finest.figures):
         values = [level.figures[row].shown(level.figures[row].value) for level in levels]
         limits = [figure.shown(figure.bound), figure.shown(figure.goal), verdict(figure)]
-        lines.append("| " + " | ".join([figure.name, *values, *limits]) + " |")
+        lines.append("| " + " | ".join([cell(figure.name), *values, *limits]) + " |")
     for label, values in (
         ("particles", [f"{level.particles:,}" for level in levels]),
         ("steps", [f"{level.steps:,}" for level in levels]),
@@ -157,6 +157,11 @@ def section(name: str, case: Case, machine: str, levels: Sequence[Level]) -> str
     observed = order(levels)
     lines += ["", f"Observed order: {observed}. " * bool(observed) + f"Machine: {machine}.", ""]
     return "\n".join(lines)
+
+
+def cell(text: str) -> str:
+    """``text`` for a cell of a table, where a bar would end it."""
+    return text.replace("|", "\\|")
 
 
 def order(levels: Sequence[Level]) -> str:
