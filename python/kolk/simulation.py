@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Precision = Literal["f64", "mixed"]
 
-DEFAULT_PRECISION: Precision = "f64"
+DEFAULT_PRECISION: Precision = "mixed"
 """Precision where none is asked for. "mixed" keeps positions in f64 and computes pairs in f32."""
 
 PRECISIONS: tuple[Precision, ...] = ("f64", "mixed")

@@ -12,7 +12,7 @@ const DAMPING: f64 = 7.0;
 /// A soft core: the force density `ρ0 k c0² (V_j/Δp^D) (1 - r²/d²) r_ij / Δp²` between particles nearer than `d`.
 ///
 /// Pressure keeps a fluid from clumping on the average; in splashes, where it vanishes, pairs could close up to nothing
-/// and single particles could pass between those of a wall. The core is not felt by particles in order: `d` is 0.6 Δp
+/// and single particles could pass between those of a wall. The core is not felt by particles in order: `d` is 0.4 Δp
 /// between fluid particles, and 0.9 Δp from wall particles, which half a spacing behind the surface are a spacing away.
 /// A dashpot along the line of centres takes up the approach, so that what hits a wall does not bounce. Conserves linear
 /// and angular momentum; dissipates kinetic energy. In the manner of the collision models of particle methods (Koshizuka, Nobe & Oka
@@ -28,7 +28,7 @@ impl Contact {
     /// Between fluid particles, for a spacing in m in `dimension` dimensions, the sound speed in m/s and the density at
     /// rest.
     pub fn fluid(spacing: f64, dimension: usize, c0: f64, reference_density: f64) -> Self {
-        Self::new(0.6 * spacing, spacing, dimension, c0, reference_density)
+        Self::new(0.4 * spacing, spacing, dimension, c0, reference_density)
     }
 
     /// Between fluid and wall particles.

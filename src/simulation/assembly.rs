@@ -7,7 +7,7 @@ use crate::effects::{
     Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
     Morris, PairTerm, Shift,
 };
-use crate::eos::{AnyEos, Linear, Tait};
+use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
@@ -112,6 +112,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 let pass = Extrapolation {
                     gravity: self.motion.gravity,
                     eos: self.motion.eos,
+                    at_rest: self.motion.eos.condensation(0.0),
                     suction: config.suction.unwrap_or(self.grid.is_periodic()),
                     no_slip: config.slip == Slip::No,
                 };

@@ -14,6 +14,8 @@ pub struct Extrapolation<const D: usize> {
     pub gravity: [f64; D],
     /// Equation of state of the fluid.
     pub eos: AnyEos,
+    /// Condensation without pressure.
+    pub at_rest: f64,
     /// Whether a wall may pull: without a free surface it may, with one it would hold the fluid back.
     pub suction: bool,
     /// Whether the fluid sticks.
@@ -79,7 +81,8 @@ impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
                 out[3 + a][i] = wall_velocity[a];
             }
         }
-        let condensation = self.eos.condensation(pressure);
+        // Most of a tank's walls are dry: they cost no power function.
+        let condensation = if pressure == 0.0 { self.at_rest } else { self.eos.condensation(pressure) };
         out[0][i] = R::from_f64(pressure);
         out[1][i] = R::from_f64(condensation);
         out[2][i] = R::from_f64(at_rest.to_f64() / (1.0 + condensation));
