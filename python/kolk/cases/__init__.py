@@ -58,7 +58,7 @@ class Case:
     reference: str
     """What it is compared with."""
     cost: str
-    """Particles, steps and time at default spacing, in f64 and without the pictures."""
+    """Particles, steps and time at default spacing, without the pictures."""
     scene: Scene
     """At default spacing."""
     comparisons: tuple[Comparison, ...] = ()
