@@ -65,7 +65,7 @@ case = Case(
     shows="a surge, its impact on a wall, and the wave that returns; pressure against experiment",
     source="Lobovsky et al., J. Fluids Struct. 48 (2014) 407-434: tank 1.61 x 0.6 m, H = 0.3 m",
     reference="band of 100 repetitions at sensor 2; typical curves of sensors 1, 3 and 4",
-    cost="7,200 fluid and 2,280 wall particles, about 9,200 steps: 20 seconds on two cores",
+    cost="7,200 fluid and 2,280 wall particles, about 9,200 steps: 15 seconds on two cores",
     scene=scene,
     comparisons=(
         Comparison("pressure", "P2", "lobovsky-sensor2-band", TIME, PRESSURE, "band"),

@@ -67,7 +67,7 @@ case = Case(
     shows="a surge that hits a box and closes over it; pressures on the box and water levels",
     source="Kleefsman et al., J. Comput. Phys. 206 (2005) 363-393 (SPHERIC benchmark test 2)",
     reference="the experiment's pressures P1 to P8 and levels H1 to H4; it lasts 6 s (--until 6)",
-    cost="85,400 fluid and 128,100 wall particles, about 9,000 steps: 13 minutes on two cores",
+    cost="85,400 fluid and 128,100 wall particles, about 9,000 steps: 9 minutes on two cores",
     scene=scene,
     comparisons=(
         *(

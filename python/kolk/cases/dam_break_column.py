@@ -59,7 +59,7 @@ case = Case(
     shows="a surge that splits at a tall column; the force on it",
     source="Yeh and Petroff, as in Raad and Bidoae, J. Comput. Phys. 203 (2005) 668-699",
     reference="the measured force: peak 33.1 N at 0.396 s over a bed with 1 cm of water",
-    cost="194,000 fluid and 368,200 wall particles, about 3,100 steps: 10 minutes on two cores",
+    cost="194,000 fluid and 368,200 wall particles, about 3,100 steps: 7 minutes on two cores",
     scene=scene,
     comparisons=(Comparison("force_x", "load", "yeh-petroff-force", 1.0, 1.0, "series"),),
 )

@@ -58,7 +58,7 @@ case = Case(
     shows="laminar viscosity and no-slip walls, from rest to the steady parabola",
     source="Morris, Fox and Zhu, J. Comput. Phys. 136 (1997) 214-226: L = 1 mm, Re = 0.025",
     reference="the exact series in time and height",
-    cost="1,000 fluid and 160 wall particles, about 5,300 steps: 3 seconds on two cores",
+    cost="1,000 fluid and 160 wall particles, about 5,300 steps: 2 seconds on two cores",
     scene=scene,
     comparisons=(
         Comparison(

@@ -48,7 +48,7 @@ case = Case(
     shows="that still water stays still: the first thing that a scheme must do",
     source="20 sqrt(H/g) of rest at a depth of H = 0.5 m",
     reference="hydrostatic pressure; kinetic energy against m g H",
-    cost="1,250 fluid and 512 wall particles, about 10,100 steps: 5 seconds on two cores",
+    cost="1,250 fluid and 512 wall particles, about 10,100 steps: 4 seconds on two cores",
     scene=scene,
     comparisons=(
         Comparison(

@@ -53,7 +53,7 @@ case = Case(
     shows="how fast a surge runs over a dry bed",
     source="Martin and Moyce, Phil. Trans. R. Soc. A 244 (1952) 312-324: a = 57.15 mm, height 2 a",
     reference="surge front measured for a = 2.25 inches, aligned at 1.44 a",
-    cost="3,200 fluid and 2,912 wall particles, about 5,600 steps: 7 seconds on two cores",
+    cost="3,200 fluid and 2,912 wall particles, about 5,600 steps: 5 seconds on two cores",
     scene=scene,
     comparisons=(
         Comparison("front", "front", "martin-moyce-2.25in", TIME, A, "front", "", ALIGNED),
