@@ -2,6 +2,7 @@
 
 A probe reads the simulation and never changes it, not even its time steps: a sample is taken at
 the end of the first step at or after the moment it is due, and its row carries that step's time.
+Pressures and forces, which have sound in them, are means of several readings over their interval.
 
 | probe | value | unit |
 |---|---|---|
@@ -111,6 +112,8 @@ class Probe(Protocol):
     quantity: str
     unit: str
     columns: tuple[str, ...]
+    readings: int
+    """Readings whose mean makes a row."""
 
     def evaluate(self, simulation: Simulation) -> tuple[float, ...]:
         """The values of the present state, one per column."""
@@ -125,7 +128,7 @@ class WallPressure:
     extrapolates the fluid's pressure to each point with its hydrostatic part. Where the fluid fills
     hardly any of the kernel (a droplet in reach of a dry sensor) the pressure counts in proportion,
     and a dry part of the face counts as 0 Pa, as it does on a real sensor. Points of the face
-    inside another wall are left out.
+    inside another wall are left out. A row is the mean of 8 readings since the last.
     """
 
     WET = 0.2
@@ -135,6 +138,7 @@ class WallPressure:
     """Points on a sensor's face."""
 
     quantity, unit = "pressure", "Pa"
+    readings = 8
     columns: tuple[str, ...] = ("value",)
 
     def __init__(
@@ -208,6 +212,7 @@ class WaterLevel:
     """
 
     quantity, unit = "level", "m"
+    readings = 1
     columns: tuple[str, ...] = ("value",)
 
     def __init__(
@@ -293,6 +298,7 @@ class SurgeFront:
     GAP = 2.0
 
     quantity, unit = "front", "m"
+    readings = 1
     columns: tuple[str, ...] = ("value",)
 
     def __init__(
@@ -329,6 +335,7 @@ class WallForce:
     """Force of the fluid on a wall body and its moment about the origin."""
 
     quantity = "force"
+    readings = 8
 
     def __init__(self, name: str, body: str, around: Surroundings) -> None:
         self.name, self.body = name, body
@@ -347,6 +354,7 @@ class WallForce:
 class FieldAt:
     """Pressure, density or velocity of the fluid at a point; 0 where there is none."""
 
+    readings = 1
     UNITS: ClassVar = {"pressure": "Pa", "density": "kg/m³", "velocity": "m/s"}
 
     def __init__(self, name: str, quantity: str, at: Sequence[float], around: Surroundings) -> None:

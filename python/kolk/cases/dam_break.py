@@ -50,7 +50,12 @@ scene = Scene(
     ],
     probe=[
         *(
-            {"name": name, "pressure": {"at": [LENGTH, height], "diameter": SENSOR}}
+            {
+                "name": name,
+                "pressure": {"at": [LENGTH, height], "diameter": SENSOR},
+                # The surge takes 1.5 ms to pass one spacing: no finer than that is resolved.
+                "every": 0.02 * TIME,
+            }
             for name, height in SENSORS.items()
         ),
         {"name": "front", "front": {"axis": "x", "body": "water"}},

@@ -68,24 +68,44 @@ class Stopwatch:
 
 
 class Sampler:
-    """A probe with its table and its moments: every multiple of `every` (s)."""
+    """A probe with its table: a row at every multiple of `every` (s).
+
+    A row is the mean of the probe's `readings`, spread evenly over the interval that it ends: a
+    sample at one moment of a signal with sound in it would be a matter of chance.
+    """
 
     def __init__(self, probe: Probe, every: float, folder: RunFolder, book: Any = None) -> None:
-        self.probe, self.every = probe, every
+        self.probe, self.every = probe, every / probe.readings
         self.next = int(book["next"]) if book else 0
         length = int(book["length"]) if book else None
+        self.sums = [float(value) for value in book["sums"]] if book else []
+        self.count = int(book["count"]) if book else 0
         self.table = Table(folder.probe(probe.name), ("time", *probe.columns), length)
 
     def take(self, simulation: Simulation) -> None:
-        """Adds a row if one is due."""
+        """Takes a reading if one is due, and adds a row if it completes one."""
         now = simulation.time
-        if now >= self.next * self.every * (1.0 - 1e-12):
-            self.table.append((now, *self.probe.evaluate(simulation)))
-            self.next = math.floor(now / self.every * (1.0 + 1e-12)) + 1
+        if now < self.next * self.every * (1.0 - 1e-12):
+            return
+        reading = (now, *self.probe.evaluate(simulation))
+        self.sums = (
+            [a + b for a, b in zip(self.sums, reading, strict=True)] if self.sums else list(reading)
+        )
+        self.count += 1
+        row = math.ceil(self.next / self.probe.readings) * self.probe.readings
+        if now >= row * self.every * (1.0 - 1e-12):
+            self.table.append(tuple(value / self.count for value in self.sums))
+            self.sums, self.count = [], 0
+        self.next = math.floor(now / self.every * (1.0 + 1e-12)) + 1
 
-    def book(self) -> dict[str, int]:
+    def book(self) -> dict[str, Any]:
         """What a checkpoint keeps of it."""
-        return {"next": self.next, "length": self.table.length}
+        return {
+            "next": self.next,
+            "length": self.table.length,
+            "sums": self.sums,
+            "count": self.count,
+        }
 
 
 class Recorder:
