@@ -12,15 +12,15 @@ use kolk::simulation::Precision;
 use serde_json::json;
 use std::process::{Command, ExitCode};
 
-const FEW: u64 = 8;
-const MANY: u64 = 24;
+const FEW: u64 = 4;
+const MANY: u64 = 12;
 const RUN: &str = "--run-kolk-steps";
 
 /// A fluid in a tank, out of order.
 fn scene(dimension: &str, form: &str) -> Scene {
     let scene = match dimension {
-        "2d" => tank_of::<2>(80, 60, 0.01, 0.3),
-        _ => tank_of::<3>(18, 16, 0.01, 0.3),
+        "2d" => tank_of::<2>(50, 40, 0.01, 0.3),
+        _ => tank_of::<3>(14, 12, 0.01, 0.3),
     };
     scene.with(json!({"density_diffusion": {"form": form, "delta": 0.1}}))
 }

@@ -24,6 +24,7 @@ fn viscosities() -> Vec<Choice> {
     let laminar = |form| json!({"artificial_viscosity": null, "laminar_viscosity": {"kinematic": 1e-4, "form": form}});
     let both = json!({
         "artificial_viscosity": {"alpha": 0.02, "beta": 0.04}, "laminar_viscosity": {"kinematic": 1e-5},
+        "acoustic_damper": 0.3,
     });
     vec![
         ("none", json!({"artificial_viscosity": null})),
