@@ -299,7 +299,9 @@ class Probe(Model):
     force: ForceProbe | None = None
     field: FieldProbe | None = None
     every: Positive | None = Field(
-        default=None, description="interval, s; output.every / 20 if absent"
+        default=None,
+        description="interval of rows, s, over which pressures and forces are averaged; "
+        "output.every / 20 if absent",
     )
 
     @model_validator(mode="after")
