@@ -8,16 +8,18 @@
 //! threads.
 
 mod gather;
+mod geometry;
 mod moment;
 mod pair;
+mod slab;
 
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
 
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
-use crate::simd::{Lanes, Real, Task, dispatch, dot};
-use gather::Buffer;
+use crate::simd::{Lanes, Real, dispatch};
+use slab::{Slab, Workspace};
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
@@ -42,6 +44,19 @@ pub struct Sums<L, const D: usize> {
     pub gradient: [L; D],
     /// A symmetric matrix: xx, yy, xy, then zz, yz, xz.
     pub moment: [L; 6],
+}
+
+impl<L: Lanes, const D: usize> Sums<L, D> {
+    #[inline(always)]
+    /// Nothing summed yet.
+    pub fn zero() -> Self {
+        Sums {
+            scalar: L::zero(),
+            vector: [L::zero(); D],
+            gradient: [L::zero(); D],
+            moment: [L::zero(); 6],
+        }
+    }
 }
 
 /// What is summed over neighbours, and what is made of the sums. Methods must be `#[inline(always)]`.
@@ -131,12 +146,6 @@ impl<'a, R: Real, const D: usize> Source<'a, R, D> {
     }
 }
 
-/// Buffers of one thread.
-struct Workspace<R> {
-    candidates: [Buffer<R>; 2],
-    selected: [Buffer<R>; 2],
-}
-
 /// What stays between sweeps: buffers per thread, the kernel's constants.
 pub struct Sweeper<R> {
     workspaces: Vec<Mutex<Workspace<R>>>,
@@ -161,12 +170,6 @@ pub struct Sweep<'a, R, P, const D: usize> {
 impl<R: Real> Sweeper<R> {
     /// Buffers for `threads` threads, and clusters for `per_cell` particles in each cell of `parts` parts.
     pub fn new(threads: usize, smoothing_length: f64, per_cell: f64, parts: usize) -> Self {
-        let workspace = || {
-            Mutex::new(Workspace {
-                candidates: [Buffer::new(), Buffer::new()],
-                selected: [Buffer::new(), Buffer::new()],
-            })
-        };
         let mut parts_per_cluster = parts;
         while parts_per_cluster > 1
             && per_cell * (parts_per_cluster as f64) > 1.4 * CLUSTER * parts as f64
@@ -174,7 +177,9 @@ impl<R: Real> Sweeper<R> {
             parts_per_cluster /= 2;
         }
         Sweeper {
-            workspaces: (0..threads.max(1)).map(|_| workspace()).collect(),
+            workspaces: (0..threads.max(1))
+                .map(|_| Mutex::new(Workspace::new()))
+                .collect(),
             smoothing_length,
             parts_per_cluster,
         }
@@ -183,12 +188,10 @@ impl<R: Real> Sweeper<R> {
     /// Forgets what the buffers hold.
     pub fn wipe(&self) {
         for workspace in &self.workspaces {
-            let mut w = workspace.lock().unwrap_or_else(PoisonError::into_inner);
-            let Workspace {
-                candidates,
-                selected,
-            } = &mut *w;
-            candidates.iter_mut().chain(selected).for_each(Buffer::wipe);
+            workspace
+                .lock()
+                .unwrap_or_else(PoisonError::into_inner)
+                .wipe();
         }
     }
 
@@ -263,219 +266,7 @@ impl<R: Real> Sweeper<R> {
     pub fn bytes(&self) -> usize {
         self.workspaces
             .iter()
-            .map(|w| {
-                let w = w.lock().unwrap_or_else(PoisonError::into_inner);
-                w.candidates
-                    .iter()
-                    .chain(&w.selected)
-                    .map(Buffer::bytes)
-                    .sum::<usize>()
-            })
+            .map(|w| w.lock().unwrap_or_else(PoisonError::into_inner).bytes())
             .sum()
-    }
-}
-
-/// Some consecutive cells: the work of one task.
-struct Slab<'a, 'b, R, P, const D: usize> {
-    sweep: &'a Sweep<'a, R, P, D>,
-    h: f64,
-    cells: Range<usize>,
-    workspace: &'a mut Workspace<R>,
-    out: Output<'b, R>,
-    kernel: KernelName,
-    parts_per_cluster: usize,
-}
-
-impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn run<L: Lanes<Real = R>>(mut self) {
-        let Sweep {
-            grid,
-            target,
-            fluid,
-            wall,
-            pass,
-        } = self.sweep;
-        let geometry = Geometry::<L, D>::new(self.kernel, self.h);
-        let reach = R::from_f64(self.h * self.kernel.support() * (1.0 + 1e-5));
-        let edge = grid.edge();
-        let start = target
-            .cells
-            .particles(self.cells.start, self.cells.start)
-            .start;
-        let Workspace {
-            candidates,
-            selected,
-        } = &mut *self.workspace;
-        let sources = [*fluid, *wall];
-        for cell in self.cells.clone() {
-            let mut frame: Option<[f64; D]> = None;
-            for part in (0..Grid::<D>::PARTS).step_by(self.parts_per_cluster) {
-                let particles = target.cells.bins(cell, part, part + self.parts_per_cluster);
-                let mut first = particles.start;
-                while first < particles.end {
-                    let at =
-                        |i: usize| -> [f64; D] { std::array::from_fn(|a| target.position[a][i]) };
-                    let near = |frame: &[f64; D], i: usize| {
-                        // Written so that a position that is not a number is near nothing.
-                        (0..D).all(|a| (target.position[a][i] - frame[a]).abs() <= 2.0 * edge[a])
-                    };
-                    let origin = match frame {
-                        Some(origin) if near(&origin, first) => origin,
-                        _ => {
-                            let origin = at(first);
-                            for (buffer, source) in candidates.iter_mut().zip(sources) {
-                                if let Some(source) = source {
-                                    buffer.gather::<L, D>(source, grid, cell, &origin);
-                                }
-                            }
-                            frame = Some(origin);
-                            origin
-                        }
-                    };
-                    let mut end = first + 1;
-                    while end < particles.end && near(&origin, end) {
-                        end += 1;
-                    }
-                    let relative = |i: usize| -> [R; D] {
-                        std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
-                    };
-                    let mut low = relative(first);
-                    let mut high = low;
-                    for i in first + 1..end {
-                        let x = relative(i);
-                        for a in 0..D {
-                            low[a] = Lanes::min(x[a], low[a]);
-                            high[a] = Lanes::max(x[a], high[a]);
-                        }
-                    }
-                    for s in 0..2 {
-                        if let Some(source) = sources[s] {
-                            selected[s].select::<L, D>(&candidates[s], source, &low, &high, reach);
-                        }
-                    }
-                    for i in first..end {
-                        let own = target.own(i);
-                        let x = relative(i).map(L::splat);
-                        let mut sums = Sums::zero();
-                        if fluid.is_some() {
-                            geometry.add::<P, false>(pass, &x, &own, &selected[0], &mut sums);
-                        }
-                        if wall.is_some() {
-                            geometry.add::<P, true>(pass, &x, &own, &selected[1], &mut sums);
-                        }
-                        pass.finish(&own, &sums, i - start, &mut self.out);
-                    }
-                    first = end;
-                }
-            }
-        }
-    }
-}
-
-impl<L: Lanes, const D: usize> Sums<L, D> {
-    #[inline(always)]
-    fn zero() -> Self {
-        Sums {
-            scalar: L::zero(),
-            vector: [L::zero(); D],
-            gradient: [L::zero(); D],
-            moment: [L::zero(); 6],
-        }
-    }
-}
-
-/// Constants of the kernel as lanes.
-struct Geometry<L, const D: usize> {
-    inverse_h: L,
-    support2: L,
-    value: L,
-    slope: L,
-    tiny: L,
-    kernel: KernelName,
-}
-
-impl<L: Lanes, const D: usize> Geometry<L, D> {
-    #[inline(always)]
-    fn new(kernel: KernelName, h: f64) -> Self {
-        let sigma = kernel.normalisation(D);
-        Geometry {
-            inverse_h: L::constant(1.0 / h),
-            support2: L::constant((h * kernel.support()).powi(2)),
-            value: L::constant(sigma / h.powi(D as i32)),
-            slope: L::constant(sigma / h.powi(D as i32 + 2)),
-            tiny: L::constant(1e-18 * h * h),
-            kernel,
-        }
-    }
-
-    /// Adds to `sums` what `pass` makes of every vector of `others` around `x`, which are walls if `WALL`.
-    #[inline(always)]
-    fn add<P: Pass<L::Real, D>, const WALL: bool>(
-        &self,
-        pass: &P,
-        x: &[L; D],
-        own: &Own<L::Real, D>,
-        others: &Buffer<L::Real>,
-        sums: &mut Sums<L, D>,
-    ) {
-        // One loop for the default kernel, and one for all others with a branch per vector: read as if the name could
-        // change, for the compiler would otherwise make a copy of the loop per kernel, and of every sweep five.
-        let step = L::N;
-        match self.kernel {
-            KernelName::WendlandC2 => {
-                for k in (0..others.len()).step_by(step) {
-                    self.vector::<P, WALL>(KernelName::WendlandC2, pass, x, own, others, k, sums);
-                }
-            }
-            _ => {
-                for k in (0..others.len()).step_by(step) {
-                    // SAFETY: a reference is valid for reads.
-                    let kernel = unsafe { std::ptr::read_volatile(&self.kernel) };
-                    self.vector::<P, WALL>(kernel, pass, x, own, others, k, sums);
-                }
-            }
-        }
-    }
-
-    #[inline(always)]
-    fn vector<P: Pass<L::Real, D>, const WALL: bool>(
-        &self,
-        kernel: KernelName,
-        pass: &P,
-        x: &[L; D],
-        own: &Own<L::Real, D>,
-        others: &Buffer<L::Real>,
-        k: usize,
-        sums: &mut Sums<L, D>,
-    ) {
-        let stride = others.stride();
-        let other = Other::<L, D> {
-            at: others.column(0).wrapping_add(k),
-            stride,
-        };
-        // SAFETY: the buffer is closed by a whole vector of particles out of reach.
-        let separation =
-            std::array::from_fn(|a| x[a] - unsafe { L::load(other.at.add(a * stride)) });
-        let squared = dot(&separation, &separation);
-        let inside = squared.less(self.support2);
-        let q = squared.max(self.tiny).sqrt() * self.inverse_h;
-        let slope = (self.slope * kernel.slope_over_q(q)).only(inside);
-        let pair = Pair {
-            separation,
-            squared,
-            slope,
-            q,
-            inside,
-            normalisation: self.value,
-            kernel,
-        };
-        if WALL {
-            pass.wall(&pair, &Splat(own), &other, sums);
-        } else {
-            pass.fluid(&pair, &Splat(own), &other, sums);
-        }
     }
 }
