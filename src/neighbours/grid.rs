@@ -137,6 +137,10 @@ impl<const D: usize> Grid<D> {
                 let turns = ((x[a] - self.low[a]) / period).floor();
                 if turns != 0.0 {
                     x[a] -= turns * period;
+                    // Rounding can bring a position just below the period up to its end, which is its start.
+                    if x[a] >= self.low[a] + period {
+                        x[a] = self.low[a];
+                    }
                 }
             }
         }

@@ -74,11 +74,16 @@ impl<R: Real, const D: usize> Wall<R, D> {
 
     fn sort(&mut self, grid: &Grid<D>) {
         let mut sorter = Sorter::new(self.len());
+        for i in 0..self.len() {
+            let mut x = std::array::from_fn(|a| self.position[a][i]);
+            grid.wrap(&mut x);
+            for a in 0..D {
+                self.position[a][i] = x[a];
+            }
+        }
         let position = &self.position;
         sorter.sort(&mut self.cells, |i| {
-            let mut x = std::array::from_fn(|a| position[a][i]);
-            grid.wrap(&mut x);
-            grid.bin(&x)
+            grid.bin(&std::array::from_fn(|a| position[a][i]))
         });
         let order = &sorter.order;
         let mut doubles = Column::new(self.len());

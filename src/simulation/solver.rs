@@ -195,7 +195,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
     fn prime(&mut self) -> Result<()> {
         self.timers.start();
         self.sort(false);
-        self.motion.first_half(&mut self.fluid, 0.0);
+        if !self.motion.first_half(&mut self.fluid, 0.0) {
+            return Err(self.trouble());
+        }
         self.update_walls();
         self.sum_forces();
         self.motion.second_half(&mut self.fluid, 0.0);
@@ -212,7 +214,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if 2.0 * (self.travelled + 1.5 * dt * self.state.speed) > self.skin {
             self.sort(false);
         }
-        self.motion.first_half(&mut self.fluid, dt);
+        if !self.motion.first_half(&mut self.fluid, dt) {
+            return Err(self.trouble());
+        }
         self.travelled += 0.5 * dt * self.state.speed;
         self.timers.book(Phase::Integrate);
         self.update_walls();
@@ -252,37 +256,37 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if (self.state.finite && density_ok) || self.fluid.is_empty() {
             return Ok(());
         }
-        Err(Error::Instability(Box::new(self.find_trouble())))
+        Err(self.trouble())
     }
 
-    /// The first particle, by id, with a number that cannot be.
-    fn find_trouble(&self) -> Instability {
+    /// What is wrong with the particle that is most wrong: numbers that are not finite in the state come before those
+    /// that follow from them, and among equals the lowest id.
+    fn trouble(&self) -> Error {
         let fluid = &self.fluid;
         let reference = self.config.reference_density;
-        let mut found: Option<(u32, usize, &'static str, f64)> = None;
+        let mut found: Option<(usize, u32, usize, &'static str, f64)> = None;
         for i in 0..fluid.len() {
-            let (x, v) = (fluid.at(i), fluid.velocity_of(i));
-            let density = fluid.density[i];
-            let bad = |values: &[f64]| values.iter().copied().find(|v| !v.is_finite());
-            let trouble = if let Some(value) = bad(&x) {
-                Some(("position", value))
-            } else if let Some(value) = bad(&v) {
-                Some(("velocity", value))
-            } else if !(density > 0.5 * reference && density < 1.5 * reference) {
-                Some(("density", density))
-            } else {
-                bad(&std::array::from_fn::<_, D, _>(|a| {
-                    fluid.acceleration[a][i].to_f64()
-                }))
-                .map(|a| ("acceleration", a))
-            };
-            if let Some((quantity, value)) = trouble
-                && found.is_none_or(|f| fluid.id[i] < f.0)
-            {
-                found = Some((fluid.id[i], i, quantity, value));
+            let (x, v, density) = (fluid.at(i), fluid.velocity_of(i), fluid.density[i]);
+            let rates: [f64; D] = std::array::from_fn(|a| fluid.acceleration[a][i].to_f64());
+            let outside = density <= 0.5 * reference || density >= 1.5 * reference;
+            let suspects: [(&'static str, &[f64], bool); 6] = [
+                ("position", &x, false),
+                ("velocity", &v, false),
+                ("density", &[density], false),
+                ("acceleration", &rates, false),
+                ("rate of density", &[fluid.density_rate[i].to_f64()], false),
+                ("density", &[density], outside),
+            ];
+            for (rank, (quantity, values, wrong)) in suspects.into_iter().enumerate() {
+                let value = values.iter().copied().find(|v| wrong || !v.is_finite());
+                if let Some(value) = value
+                    && found.is_none_or(|f| (rank, fluid.id[i]) < (f.0, f.1))
+                {
+                    found = Some((rank, fluid.id[i], i, quantity, value));
+                }
             }
         }
-        let (particle, i, quantity, value) = found.unwrap_or((0, 0, "state", f64::NAN));
+        let (_, particle, i, quantity, value) = found.unwrap_or((0, 0, 0, "state", f64::NAN));
         let (cause, remedy) = if value.is_finite() {
             (
                 format!(
@@ -298,7 +302,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 "lower the Courant number or the time step; check the initial state".to_owned(),
             )
         };
-        Instability {
+        Error::Instability(Box::new(Instability {
             time: self.time,
             step: self.step,
             particle,
@@ -307,7 +311,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             value,
             cause,
             remedy,
-        }
+        }))
     }
 }
 

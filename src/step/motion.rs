@@ -113,8 +113,9 @@ impl<R: Real, const D: usize> Columns<R, D> {
 }
 
 impl<const D: usize> Motion<D> {
-    /// Half a drift of position and density; leaves what the sweep of forces reads.
-    pub fn first_half<R: Real>(&self, fluid: &mut Fluid<R, D>, dt: f64) {
+    /// Half a drift of position and density; leaves what the sweep of forces reads. Gives whether all of it is finite:
+    /// asked before the sweep, which would spread what is not.
+    pub fn first_half<R: Real>(&self, fluid: &mut Fluid<R, D>, dt: f64) -> bool {
         let n = fluid.len();
         let columns = Columns::new(fluid);
         let (acceleration, rate, mass) = (&fluid.acceleration, &fluid.density_rate, &fluid.mass);
@@ -122,13 +123,15 @@ impl<const D: usize> Motion<D> {
         let damper = R::from_f64(self.bulk_viscosity);
         for_ranges(
             n,
-            || (),
-            |(), ()| (),
+            || true,
+            |a, b| a && b,
             |range| {
                 // SAFETY: the ranges of a pass are disjoint.
                 let part = unsafe { columns.part(&range) };
                 let m = &mass[range.clone()];
                 let rate = &rate[range.clone()];
+                // A sum of all numbers times zero is zero, or not a number: one test for all of them.
+                let mut zero = 0.0;
                 for a in 0..D {
                     let acceleration = &acceleration[a][range.clone()];
                     for i in 0..m.len() {
@@ -136,6 +139,7 @@ impl<const D: usize> Motion<D> {
                         part.position[a][i] += half * v;
                         let total = acceleration[i].to_f64() + self.gravity[a];
                         part.pair_velocity[a][i] = R::from_f64(v + half * total);
+                        zero += 0.0 * (part.position[a][i] + v + total);
                     }
                 }
                 for i in 0..m.len() {
@@ -149,9 +153,11 @@ impl<const D: usize> Motion<D> {
                     );
                     let pressure: R = self.eos.pressure(part.condensation[i]);
                     part.pressure[i] = pressure + damper * rate[i];
+                    zero += 0.0 * (part.pressure[i].to_f64() + part.volume[i].to_f64());
                 }
+                zero == 0.0
             },
-        );
+        )
     }
 
     /// Kick, and half a drift of position; leaves what the sweep of continuity reads. Gives the largest speed.

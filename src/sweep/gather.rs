@@ -56,8 +56,9 @@ impl<R: Real> Buffer<R> {
     #[cold]
     #[inline(never)]
     fn grow<const D: usize>(&mut self, needed: usize) {
-        // The numbers already there move along: growth happens in the first steps only.
-        let stride = (needed * 5 / 4 + 4 * PAD).next_multiple_of(PAD);
+        // The numbers already there move along. Ample from the start, so that growth ends with the first steps; an odd
+        // number of vectors, so that columns do not meet in the same lines of the cache.
+        let stride = (needed.max(512) * 3 / 2 / PAD | 1) * PAD;
         let mut data = vec![R::default(); stride * (D + SLOTS)];
         for c in 0..D + SLOTS {
             let from = c * self.stride;

@@ -82,7 +82,11 @@ impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
             }
         }
         // Most of a tank's walls are dry: they cost no power function.
-        let condensation = if pressure == 0.0 { self.at_rest } else { self.eos.condensation(pressure) };
+        let condensation = if pressure == 0.0 {
+            self.at_rest
+        } else {
+            self.eos.condensation(pressure)
+        };
         out[0][i] = R::from_f64(pressure);
         out[1][i] = R::from_f64(condensation);
         out[2][i] = R::from_f64(at_rest.to_f64() / (1.0 + condensation));
