@@ -122,7 +122,12 @@ impl<const D: usize> Grid<D> {
             // A float to integer cast saturates and sends NaN to 0: no position can leave the table.
             let c = floor as i64;
             let n = self.cells[a] as i64;
-            let c = if c >= 0 && c < n { c } else { c.rem_euclid(n) };
+            // A wrapped position may still round to an end of the period: it belongs to the cell at that end.
+            let c = match c {
+                c if c >= 0 && c < n => c,
+                c if self.periodic[a] => c.clamp(0, n - 1),
+                c => c.rem_euclid(n),
+            };
             cell = cell * self.cells[a] + c as usize;
         }
         (cell * Self::PARTS + part) as u32
@@ -137,10 +142,6 @@ impl<const D: usize> Grid<D> {
                 let turns = ((x[a] - self.low[a]) / period).floor();
                 if turns != 0.0 {
                     x[a] -= turns * period;
-                    // Rounding can bring a position just below the period up to its end, which is its start.
-                    if x[a] >= self.low[a] + period {
-                        x[a] = self.low[a];
-                    }
                 }
             }
         }

@@ -8,6 +8,12 @@ use crate::simd::{Lanes, Real};
 /// A position out of everybody's reach, whose square is still finite in single precision.
 const FAR: f64 = 1e15;
 
+/// Distance of columns with room for `particles`: an odd number of vectors, so that columns do not meet in the same lines
+/// of the cache.
+fn stride_for(particles: usize) -> usize {
+    (particles / PAD + 4 | 1) * PAD
+}
+
 /// Columns of candidates: positions relative to a frame, then the fields of the source.
 pub(crate) struct Buffer<R> {
     data: Vec<R>,
@@ -16,10 +22,12 @@ pub(crate) struct Buffer<R> {
 }
 
 impl<R: Real> Buffer<R> {
-    pub(crate) fn new() -> Self {
+    /// Room for `particles` in `dimension` dimensions, so that a thread that comes to a sweep late need not make it.
+    pub(crate) fn new(particles: usize, dimension: usize) -> Self {
+        let stride = stride_for(particles);
         Buffer {
-            data: Vec::new(),
-            stride: 0,
+            data: vec![R::default(); stride * (dimension + SLOTS)],
+            stride,
             len: 0,
         }
     }
@@ -56,9 +64,8 @@ impl<R: Real> Buffer<R> {
     #[cold]
     #[inline(never)]
     fn grow<const D: usize>(&mut self, needed: usize) {
-        // The numbers already there move along. Ample from the start, so that growth ends with the first steps; an odd
-        // number of vectors, so that columns do not meet in the same lines of the cache.
-        let stride = (needed.max(512) * 3 / 2 / PAD | 1) * PAD;
+        // The numbers already there move along.
+        let stride = stride_for(needed * 3 / 2);
         let mut data = vec![R::default(); stride * (D + SLOTS)];
         for c in 0..D + SLOTS {
             let from = c * self.stride;

@@ -178,7 +178,7 @@ impl<R: Real> Sweeper<R> {
         }
         Sweeper {
             workspaces: (0..threads.max(1))
-                .map(|_| Mutex::new(Workspace::new()))
+                .map(|_| Mutex::new(Workspace::new(per_cell, parts.ilog2() as usize)))
                 .collect(),
             smoothing_length,
             parts_per_cluster,

@@ -15,8 +15,11 @@ pub(super) struct Workspace<R> {
 }
 
 impl<R: Real> Workspace<R> {
-    pub(super) fn new() -> Self {
-        let pair = || [Buffer::new(), Buffer::new()];
+    /// For cells of `per_cell` particles in order.
+    pub(super) fn new(per_cell: f64, dimension: usize) -> Self {
+        // The cells around a cell, and half as much again: disorder crowds some of them.
+        let room = (1.5 * per_cell.min(1000.0) * 3f64.powi(dimension as i32)) as usize;
+        let pair = || [Buffer::new(room, dimension), Buffer::new(room, dimension)];
         Workspace {
             candidates: pair(),
             selected: pair(),

@@ -29,7 +29,7 @@ scene = Scene(
             "name": "water",
             "shape": {"box": {"from": [0.0, 0.0], "to": [A, 2 * A]}},
             "density": 1000.0,
-            "viscosity": {"artificial": 0.01, "laminar": 1e-6},
+            "viscosity": {"artificial": 0.05, "laminar": 1e-6},
         }
     ],
     wall=[
