@@ -11,7 +11,7 @@ const FAR: f64 = 1e15;
 /// Distance of columns with room for `particles`: an odd number of vectors, so that columns do not meet in the same lines
 /// of the cache.
 fn stride_for(particles: usize) -> usize {
-    (particles / PAD + 4 | 1) * PAD
+    ((particles / PAD + 4) | 1) * PAD
 }
 
 /// Columns of candidates: positions relative to a frame, then the fields of the source.
