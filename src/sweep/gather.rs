@@ -4,9 +4,13 @@ use super::{SLOTS, Source};
 use crate::neighbours::Grid;
 use crate::particles::PAD;
 use crate::simd::{Lanes, Real};
+use std::mem::MaybeUninit;
 
 /// A position out of everybody's reach, whose square is still finite in single precision.
 const FAR: f64 = 1e15;
+
+/// Vectors of candidates that are tested at a time, at most.
+const BLOCK: usize = 32;
 
 /// Distance of columns with room for `particles`: an odd number of vectors, so that columns do not meet in the same lines
 /// of the cache.
@@ -14,9 +18,15 @@ fn stride_for(particles: usize) -> usize {
     ((particles / PAD + 4) | 1) * PAD
 }
 
+/// Numbers that start at a line of the cache: whole vectors are then read from one line.
+#[derive(Clone, Copy, Default)]
+#[repr(C, align(64))]
+struct Line<R>([R; PAD]);
+
 /// Columns of candidates: positions relative to a frame, then the fields of the source.
 pub(crate) struct Buffer<R> {
-    data: Vec<R>,
+    data: Vec<Line<R>>,
+    /// Distance of columns in numbers, whole lines.
     stride: usize,
     len: usize,
 }
@@ -26,7 +36,7 @@ impl<R: Real> Buffer<R> {
     pub(crate) fn new(particles: usize, dimension: usize) -> Self {
         let stride = stride_for(particles);
         Buffer {
-            data: vec![R::default(); stride * (dimension + SLOTS)],
+            data: vec![Line::default(); stride / PAD * (dimension + SLOTS)],
             stride,
             len: 0,
         }
@@ -40,16 +50,19 @@ impl<R: Real> Buffer<R> {
     #[inline(always)]
     pub(crate) fn column(&self, c: usize) -> *const R {
         debug_assert!(self.stride > 0 || self.len == 0);
-        self.data.as_ptr().wrapping_add(c * self.stride)
+        self.data.as_ptr().cast::<R>().wrapping_add(c * self.stride)
     }
 
     #[inline(always)]
     fn column_mut(&mut self, c: usize) -> *mut R {
-        self.data.as_mut_ptr().wrapping_add(c * self.stride)
+        self.data
+            .as_mut_ptr()
+            .cast::<R>()
+            .wrapping_add(c * self.stride)
     }
 
     pub(crate) fn bytes(&self) -> usize {
-        self.data.capacity() * size_of::<R>()
+        self.data.capacity() * size_of::<Line<R>>()
     }
 
     pub(crate) fn stride(&self) -> usize {
@@ -58,7 +71,7 @@ impl<R: Real> Buffer<R> {
 
     /// Forgets all numbers, so that nothing left of a broken state can be read again.
     pub(crate) fn wipe(&mut self) {
-        self.data.fill(R::default());
+        self.data.fill(Line::default());
     }
 
     #[cold]
@@ -66,11 +79,11 @@ impl<R: Real> Buffer<R> {
     fn grow<const D: usize>(&mut self, needed: usize) {
         // The numbers already there move along.
         let stride = stride_for(needed * 3 / 2);
-        let mut data = vec![R::default(); stride * (D + SLOTS)];
+        let mut data = vec![Line::default(); stride / PAD * (D + SLOTS)];
         for c in 0..D + SLOTS {
-            let from = c * self.stride;
-            data[c * stride..c * stride + self.len]
-                .copy_from_slice(&self.data[from..from + self.len]);
+            let (from, to) = (c * self.stride / PAD, c * stride / PAD);
+            let lines = self.len.div_ceil(PAD);
+            data[to..to + lines].copy_from_slice(&self.data[from..from + lines]);
         }
         (self.data, self.stride) = (data, stride);
     }
@@ -152,31 +165,39 @@ impl<R: Real> Buffer<R> {
         self.len = 0;
         self.reserve::<D>(all.len);
         let reach2 = L::splat(reach * reach);
-        for k in (0..all.len).step_by(L::N) {
-            // SAFETY: `k` is below the length of `all`, which is closed by a vector of particles out of reach; there
-            // is room for all of them here.
-            unsafe {
-                let x: [L; D] = std::array::from_fn(|a| L::load(all.column(a).add(k)));
+        let (low, high) = (low.map(L::splat), high.map(L::splat));
+        // In 3D, where every other vector is out of reach and no branch could predict which, those that hold anybody near
+        // are found first, then compacted. In 2D nearly all are near: one by one.
+        let width = if D == 2 { 1 } else { BLOCK } * L::N;
+        let mut near = [const { MaybeUninit::<(usize, L::Mask)>::uninit() }; BLOCK];
+        for block in (0..all.len).step_by(width) {
+            let mut hits = 0;
+            for k in (block..all.len.min(block + width)).step_by(L::N) {
                 let mut r2 = L::zero();
                 for a in 0..D {
-                    let d = (L::splat(low[a]) - x[a])
-                        .max(x[a] - L::splat(high[a]))
-                        .max(L::zero());
+                    // SAFETY: `k` is below the length of `all`, which is closed by a vector of particles out of reach.
+                    let x = unsafe { L::load(all.column(a).add(k)) };
+                    let d = (low[a] - x).max(x - high[a]).max(L::zero());
                     r2 = d.mul_add(d, r2);
                 }
-                let near = r2.less(reach2);
-                let count = L::count(near);
-                if count == 0 {
-                    continue;
+                let mask = r2.less(reach2);
+                near[hits].write((k, mask));
+                hits += usize::from(L::count(mask) > 0);
+            }
+            for hit in &near[..hits] {
+                // SAFETY: the first `hits` are written; else as above, and there is room for all particles here.
+                unsafe {
+                    let (k, mask) = hit.assume_init();
+                    for a in 0..D {
+                        L::load(all.column(a).add(k))
+                            .compress_store(mask, self.column_mut(a).add(self.len));
+                    }
+                    for &(slot, _) in source.fields() {
+                        let v = L::load(all.column(D + slot).add(k));
+                        v.compress_store(mask, self.column_mut(D + slot).add(self.len));
+                    }
+                    self.len += L::count(mask);
                 }
-                for a in 0..D {
-                    x[a].compress_store(near, self.column_mut(a).add(self.len));
-                }
-                for &(slot, _) in source.fields() {
-                    let v = L::load(all.column(D + slot).add(k));
-                    v.compress_store(near, self.column_mut(D + slot).add(self.len));
-                }
-                self.len += count;
             }
         }
         self.close::<L, D>(source.fields());
