@@ -87,7 +87,15 @@ pub fn force_level(level: Level) {
 /// Does `task` with the widest lanes of this machine.
 #[inline]
 pub fn dispatch<R: Real, T: Task<R>>(task: T) -> T::Output {
-    #[cfg(target_arch = "x86_64")]
+    // A third of the code to compile, for whoever works on the engine (CONTRIBUTING.md).
+    #[cfg(kolk_avx2_only)]
+    if level() >= Level::Avx2 {
+        // SAFETY: as below.
+        return unsafe { avx2(task) };
+    } else {
+        panic!("built with kolk_avx2_only for a machine with AVX2");
+    }
+    #[cfg(all(target_arch = "x86_64", not(kolk_avx2_only)))]
     match level() {
         // SAFETY: `level` only gives what the machine has.
         Level::Avx512 => return unsafe { avx512(task) },
@@ -95,10 +103,11 @@ pub fn dispatch<R: Real, T: Task<R>>(task: T) -> T::Output {
         Level::Avx2 => return unsafe { avx2(task) },
         Level::Baseline => {}
     }
+    #[cfg(not(kolk_avx2_only))]
     task.run::<R::Baseline>()
 }
 
-#[cfg(target_arch = "x86_64")]
+#[cfg(all(target_arch = "x86_64", not(kolk_avx2_only)))]
 #[target_feature(enable = "avx512f,avx512vl,avx512dq,avx2,fma,bmi1,bmi2,popcnt,lzcnt")]
 unsafe fn avx512<R: Real, T: Task<R>>(task: T) -> T::Output {
     task.run::<R::Avx512>()
