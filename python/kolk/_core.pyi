@@ -19,6 +19,8 @@ __all__ = [
     "laplacian",
     "neighbours",
     "particle_shift",
+    "peak_flops",
+    "simd_level",
     "tait_density",
     "tait_pressure",
 ]
@@ -47,6 +49,8 @@ class Kernel:
     @overload
     def gradient(self, r: ArrayLike, h: float) -> _Floats: ...
 
+def peak_flops(precision: str, threads: int = 0, seconds: float = 0.3) -> float: ...
+def simd_level() -> str: ...
 def kernel(name: _KernelName | str, dim: int) -> Kernel: ...
 def neighbours(
     position: ArrayLike, radius: float, periodic: _Periods = None

@@ -2,6 +2,7 @@
 //! feature `python`; nothing outside it knows Python.
 
 mod arrays;
+mod peak;
 mod simulation;
 
 use pyo3::prelude::*;
@@ -11,5 +12,7 @@ use pyo3::prelude::*;
 fn _core(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<simulation::PySimulation>()?;
+    module.add_function(wrap_pyfunction!(peak::peak_flops, module)?)?;
+    module.add_function(wrap_pyfunction!(peak::simd_level, module)?)?;
     arrays::register(module)
 }

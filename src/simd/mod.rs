@@ -7,8 +7,10 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 mod dispatch;
+mod peak;
 
 pub use dispatch::{Level, Task, available_levels, dispatch, force_level, level};
+pub use peak::peak_flops;
 
 use std::fmt::Debug;
 use std::iter::Sum;
