@@ -48,6 +48,9 @@ if TYPE_CHECKING:
     from kolk.scene import Wall as Wall
     from kolk.scene.load import load as load
     from kolk.simulation import Simulation as Simulation
+    from kolk.study.study import Study as Study
+    from kolk.study.study import accuracy as accuracy
+    from kolk.study.study import open_study as open_study
 
 _HOMES = {
     "kolk._core": (
@@ -69,6 +72,7 @@ _HOMES = {
     "kolk.runner": ("run",),
     "kolk.scene": ("Fluid", "Probe", "Scene", "Wall", "load"),
     "kolk.simulation": ("Simulation",),
+    "kolk.study.study": ("Study", "accuracy", "open_study"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}
 

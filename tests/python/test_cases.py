@@ -17,6 +17,7 @@ NAMES = (
     "dam-break-box",
     "dam-break-column",
     "poiseuille",
+    "standing-wave",
     "still-water",
     "surge-front",
     "taylor-green",

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from kolk.cli import bench, cases, check, new, render, run
+from kolk.cli import accuracy, bench, cases, check, new, render, run
 
 app = typer.Typer(
     name="kolk",
@@ -37,5 +37,13 @@ def options(
     """Options that stand before a verb (`--debug` may stand anywhere; the gate takes it out)."""
 
 
-for verb in (run.run, cases.cases, check.check, bench.bench, new.new, render.render):
+for verb in (
+    run.run,
+    cases.cases,
+    check.check,
+    accuracy.accuracy,
+    bench.bench,
+    new.new,
+    render.render,
+):
     app.command()(verb)

@@ -66,11 +66,14 @@ def explain(error: BaseException) -> tuple[int, str]:
     """Exit status and message of an error."""
     from kolk.errors import InstabilityError, KolkError
     from kolk.execution import RunInterrupted, RunStopped
+    from kolk.study.study import StudyInterrupted
 
     if isinstance(error, RunInterrupted):
         folder = shlex.quote(str(error.folder))
         again = f"render {folder}" if error.finished else f"run {folder} --resume"
         return INTERRUPTED, f"{error}; to go on:  kolk {again}"
+    if isinstance(error, StudyInterrupted):
+        return INTERRUPTED, str(error)
     if isinstance(error, KeyboardInterrupt):
         return INTERRUPTED, "interrupted before the run began; nothing was saved"
     if isinstance(error, (InstabilityError, RunStopped)):

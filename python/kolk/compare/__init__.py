@@ -17,6 +17,7 @@ from .front import ALIGNED_AT, compare_front
 from .norms import Norms, norms
 from .result import ComparisonResult
 from .series import compare_series
+from .waves import compare_standing_wave, wave_of
 
 if TYPE_CHECKING:
     from kolk.cases import Comparison
@@ -105,6 +106,8 @@ def _analytic(run: records.RunLike, asked: Comparison) -> list[ComparisonResult]
             density=given["density"],
             gravity=given["gravity"],
         )
+    if asked.reference == "standing_wave":
+        return compare_standing_wave(run.frames, wave_of(given), given.get("bed", 0.0))
     return []
 
 
@@ -118,6 +121,7 @@ __all__ = [
     "compare_front",
     "compare_hydrostatic",
     "compare_series",
+    "compare_standing_wave",
     "compare_taylor_green",
     "norms",
 ]

@@ -13,6 +13,7 @@ from matplotlib.ticker import FuncFormatter
 
 from kolk import references
 from kolk.compare.fields import FrameLike, fluid
+from kolk.compare.waves import mode_share, wave_of
 
 from . import style
 from .quantity import spread
@@ -118,6 +119,19 @@ def _decay(axes: Axes, frames: Sequence[FrameLike], asked: Comparison) -> None:
     axes.set_ylabel("velocity (RMS) / its start")
 
 
+def _wave(axes: Axes, frames: Sequence[FrameLike], asked: Comparison) -> None:
+    wave = wave_of(dict(asked.parameters))
+    bed = asked.parameters.get("bed", 0.0)
+    time = np.array([frame.time for frame in frames])
+    share = np.array([mode_share(frame, wave, bed) for frame in frames])
+    axes.plot(time, share, "o", ms=3.5, color=style.RUN, label="kolk")
+    exact_time = np.linspace(time[0], time[-1], 400)
+    exact = np.exp(wave.damping * exact_time) * np.cos(wave.frequency * exact_time)
+    axes.plot(exact_time, exact, color=style.REFERENCE, label="linear wave with viscosity")
+    axes.set_xlabel("t [s]")
+    axes.set_ylabel("share of the wave in the velocity")
+
+
 def _particles(axes: Axes, value: FloatArray, height: FloatArray, *, first: bool) -> None:
     axes.plot(
         value,
@@ -134,6 +148,7 @@ def _particles(axes: Axes, value: FloatArray, height: FloatArray, *, first: bool
 
 DRAWN: dict[str, Callable[[Axes, Sequence[FrameLike], Comparison], None]] = {
     "poiseuille": _channel,
+    "standing_wave": _wave,
     "couette": _channel,
     "hydrostatic_pressure": _still,
     "taylor_green": _decay,
