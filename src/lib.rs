@@ -47,6 +47,7 @@ pub mod kernel;
 pub mod neighbours;
 pub mod operators;
 pub mod particles;
+pub mod prescribed;
 pub mod simd;
 pub mod simulation;
 pub mod step;

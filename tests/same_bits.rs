@@ -7,6 +7,21 @@ use kolk::simulation::{Entries, Precision};
 use serde_json::json;
 use std::time::Duration;
 
+/// A tank that turns and is shaken, far enough to be sorted on the way.
+fn rolling(dimension: usize) -> serde_json::Value {
+    json!({"motion": [{"body": "tank", "parts": [
+        {
+            "path": {"kind": "rotate", "centre": vec![0.1; dimension]},
+            "signal": {"kind": "table", "time": [0.0, 0.05, 0.1, 1.0], "value": [0.0, 0.1, 0.3, 1.0]},
+        },
+        {
+            "path": {"kind": "translate", "direction": vec![0.1; dimension]},
+            "signal": {"kind": "sinus", "amplitude": 0.2, "frequency": 4.0},
+            "start": 0.01,
+        },
+    ]}]})
+}
+
 /// The scenes in which bits are compared: each with stages that the others lack.
 fn scenes() -> Vec<(&'static str, Scene)> {
     let diffusion = |form: &str| json!({"density_diffusion": {"form": form, "delta": 0.1}});
@@ -38,6 +53,21 @@ fn scenes() -> Vec<(&'static str, Scene)> {
                 .with(dynamic)
                 .with(damper)
                 .with(shifting("lind")),
+        ),
+        (
+            "rolling tank 2D",
+            tank::<2>(60, 40).with(rolling(2)).with(json!({
+                "wall": {"method": "adami", "slip": "no"}, "laminar_viscosity": {"kinematic": 1e-5},
+                "gravity_over_time": [{
+                    "direction": [1.0, 0.2], "signal": {"kind": "sinus", "amplitude": 2.0, "frequency": 3.0},
+                }],
+            })),
+        ),
+        (
+            "rolling tank 3D",
+            tank::<3>(14, 10).with(rolling(3)).with(
+                json!({"wall": {"method": "dynamic", "slip": "free"}}),
+            ),
         ),
         (
             "periodic 2D",

@@ -168,8 +168,8 @@ def _time_step(scene: Scene) -> float:
     viscosity = scene.fluid[0].viscosity
     if viscosity is not None and viscosity.laminar is not None:
         limits.append(0.125 * h**2 / viscosity.laminar)
-    if scene.gravity is not None and any(scene.gravity):
-        limits.append(0.25 * math.sqrt(h / float(np.linalg.norm(scene.gravity))))
+    if scene.gravity_at_start is not None and any(scene.gravity_at_start):
+        limits.append(0.25 * math.sqrt(h / float(np.linalg.norm(scene.gravity_at_start))))
     return min(limits)
 
 

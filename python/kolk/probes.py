@@ -36,8 +36,8 @@ _AXES = "xyz"
 class Surroundings:
     """What probes need to know of a scene besides the running state.
 
-    spacing, smoothing_length: m. gravity: (D,) or None. fluid, wall: initial positions (n, D), m;
-    walls keep theirs. kernel: name.
+    spacing, smoothing_length: m. gravity: at the start, (D,) or None. fluid, wall: positions at the
+    start (n, D), m. kernel: name.
     """
 
     dimension: int
@@ -51,7 +51,8 @@ class Surroundings:
     @classmethod
     def of(cls, simulation: Simulation) -> Surroundings:
         """Reads them off a simulation's scene and its initial bodies."""
-        config = json.loads(simulation.scene.engine_config())
+        scene = simulation.scene
+        config = json.loads(scene.engine_config())
         dimension = int(config["dimension"])
         bodies = list(simulation.initial.values())
 
@@ -59,7 +60,7 @@ class Surroundings:
             chosen = [np.asarray(b.position) for b in bodies if b.kind == kind]
             return np.concatenate([np.zeros((0, dimension)), *chosen])
 
-        gravity = config["gravity"]
+        gravity = scene.gravity_at_start
         return cls(
             dimension=dimension,
             spacing=float(config["spacing"]),
@@ -128,7 +129,8 @@ class WallPressure:
     extrapolates the fluid's pressure to each point with its hydrostatic part. Where the fluid fills
     hardly any of the kernel (a droplet in reach of a dry sensor) the pressure counts in proportion,
     and a dry part of the face counts as 0 Pa, as it does on a real sensor. Points of the face
-    inside another wall are left out. A row is the mean of 8 readings since the last.
+    inside another wall are left out. With a `body`, that wall carries the sensor along. A row is
+    the mean of 8 readings since the last.
     """
 
     WET = 0.2
@@ -142,9 +144,14 @@ class WallPressure:
     columns: tuple[str, ...] = ("value",)
 
     def __init__(
-        self, name: str, at: Sequence[float], diameter: float | None, around: Surroundings
+        self,
+        name: str,
+        at: Sequence[float],
+        diameter: float | None,
+        around: Surroundings,
+        body: str | None = None,
     ) -> None:
-        self.name = name
+        self.name, self.body = name, body
         centre = np.asarray(at, dtype=np.float64)
         face = centre[None, :]
         normal = wall_normal(centre, around)
@@ -156,7 +163,11 @@ class WallPressure:
 
     def evaluate(self, simulation: Simulation) -> tuple[float, ...]:
         """Pressure, Pa."""
-        found = simulation.sample(self.points, ["pressure", "fill"])
+        points = self.points
+        if self.body is not None:
+            turn, offset = simulation.pose(self.body)
+            points = points @ turn.T + offset
+        found = simulation.sample(points, ["pressure", "fill"])
         wet = np.clip(found["fill"] / self.WET, 0.0, 1.0)
         return (float(np.mean(found["pressure"] * wet)),)
 
@@ -332,13 +343,21 @@ def front_of(coordinate: Floats, gap: float, half: float) -> float:
 
 
 class WallForce:
-    """Force of the fluid on a wall body and its moment about the origin."""
+    """Force of the fluid on a wall body and its moment about a point (the origin)."""
 
     quantity = "force"
     readings = 8
 
-    def __init__(self, name: str, body: str, around: Surroundings) -> None:
+    def __init__(
+        self,
+        name: str,
+        body: str,
+        around: Surroundings,
+        about: Sequence[float] | None = None,
+    ) -> None:
         self.name, self.body = name, body
+        self.about = np.zeros(3)
+        self.about[: around.dimension] = 0.0 if about is None else about
         flat = around.dimension == 2
         self.unit = "N/m, N" if flat else "N, N m"
         moments = ("moment",) if flat else ("moment_x", "moment_y", "moment_z")
@@ -347,8 +366,10 @@ class WallForce:
     def evaluate(self, simulation: Simulation) -> tuple[float, ...]:
         """Components of the force, then of the moment."""
         found = simulation.force(self.body)
-        values = np.concatenate([np.ravel(found["force"]), np.ravel(found["moment"])])
-        return tuple(map(float, values))
+        force, moment = np.ravel(found["force"]), np.ravel(found["moment"])
+        lever = np.cross(self.about, np.pad(force, (0, 3 - len(force))))
+        moment = moment - lever[-len(moment) :]
+        return tuple(map(float, np.concatenate([force, moment])))
 
 
 class FieldAt:
@@ -381,12 +402,12 @@ def build_probes(scene: Scene, simulation: Simulation) -> list[tuple[Probe, floa
 def _build(spec: Any, around: Surroundings, simulation: Simulation) -> Probe:
     name, kind, what = spec.name, spec.kind, spec.what
     if kind == "pressure":
-        return WallPressure(name, what.at, what.diameter, around)
+        return WallPressure(name, what.at, what.diameter, around, what.body)
     if kind == "level":
         return WaterLevel(name, what.at, what.direction, around)
     if kind == "front":
         fluids = [b.name for b in simulation.bodies.values() if b.kind == "fluid"]
         return SurgeFront(name, _AXES.index(what.axis), [what.body or fluids[0]], around)
     if kind == "force":
-        return WallForce(name, what.body, around)
+        return WallForce(name, what.body, around, what.about)
     return FieldAt(name, what.quantity, what.at, around)

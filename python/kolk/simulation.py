@@ -295,6 +295,16 @@ class Simulation:
         found = self._engine.force(self.bodies[body].name)
         return {name: np.asarray(value, dtype=np.float64) for name, value in found.items()}
 
+    def pose(self, body: str) -> tuple[Floats, Floats]:
+        """Rotation (D, D) and displacement (D,) in m of a wall since the start.
+
+        What was at X is now at rotation @ X + displacement.
+        """
+        found = self._engine.pose(self.bodies[body].name)
+        if found is None:
+            return np.eye(self.dimension), np.zeros(self.dimension)
+        return np.asarray(found[0]), np.asarray(found[1])
+
     def state(self) -> dict[str, Any]:
         """The exact state, for `restore`: names to arrays, numbers and strings."""
         return dict(self._engine.state())

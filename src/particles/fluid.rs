@@ -159,7 +159,7 @@ impl<R: Real, const D: usize> Fluid<R, D> {
 }
 
 /// The scratch column of doubles as room for the same number of smaller numbers.
-fn reinterpret<T: Copy>(doubles: &mut [f64]) -> &mut [T] {
+pub(super) fn reinterpret<T: Copy>(doubles: &mut [f64]) -> &mut [T] {
     const { assert!(size_of::<T>() <= size_of::<f64>() && align_of::<T>() <= align_of::<f64>()) };
     // SAFETY: no larger, no stricter aligned, and every bit pattern of a double is one of an f32, f64 or u32.
     unsafe { std::slice::from_raw_parts_mut(doubles.as_mut_ptr().cast(), doubles.len()) }

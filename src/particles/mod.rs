@@ -2,11 +2,13 @@
 
 mod column;
 mod fluid;
+mod moving;
 mod parallel;
 mod wall;
 
 pub use column::{Column, PAD};
 pub use fluid::Fluid;
+pub use moving::Moving;
 pub use parallel::{GRAIN, Shared, for_ranges, permute, sum};
 pub use wall::Wall;
 

@@ -1,10 +1,11 @@
 //! The particles of walls.
 
-use super::{Column, Given, component, permute, rounded, vector_columns};
+use super::fluid::reinterpret;
+use super::{Column, Given, Moving, component, permute, rounded, vector_columns};
 use crate::neighbours::{Cells, Grid, Sorter};
 use crate::simd::Real;
 
-/// All walls of a scene. Their particles are at rest, so they are sorted once.
+/// All walls of a scene. Those at rest are sorted once.
 pub struct Wall<R, const D: usize> {
     /// Position in m.
     pub position: [Column<f64>; D],
@@ -24,6 +25,8 @@ pub struct Wall<R, const D: usize> {
     pub condensation: Column<R>,
     /// Density and its rate, where walls follow the equation of continuity.
     pub density: Option<(Column<f64>, Column<R>)>,
+    /// What walls need that move, if any does.
+    pub moving: Option<Moving<R, D>>,
     /// Particles by cell.
     pub cells: Cells,
 }
@@ -56,9 +59,11 @@ impl<R: Real, const D: usize> Wall<R, D> {
                     Column::new(n),
                 )
             }),
+            moving: None,
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
         };
-        wall.sort(grid);
+        let n = wall.len();
+        wall.sort(grid, &mut Sorter::new(n), &mut Column::new(n));
         wall
     }
 
@@ -72,31 +77,58 @@ impl<R: Real, const D: usize> Wall<R, D> {
         self.id.is_empty()
     }
 
-    fn sort(&mut self, grid: &Grid<D>) {
-        let mut sorter = Sorter::new(self.len());
-        for i in 0..self.len() {
-            let mut x = std::array::from_fn(|a| self.position[a][i]);
-            grid.wrap(&mut x);
-            for a in 0..D {
-                self.position[a][i] = x[a];
+    /// Sorts the particles into the cells of `grid`.
+    fn sort(&mut self, grid: &Grid<D>, sorter: &mut Sorter, scratch: &mut Column<f64>) {
+        if grid.is_periodic() {
+            for i in 0..self.len() {
+                let mut x = std::array::from_fn(|a| self.position[a][i]);
+                grid.wrap(&mut x);
+                for a in 0..D {
+                    self.position[a][i] = x[a];
+                }
             }
         }
         let position = &self.position;
         sorter.sort(&mut self.cells, |i| {
             grid.bin(&std::array::from_fn(|a| position[a][i]))
         });
-        let order = &sorter.order;
-        let mut doubles = Column::new(self.len());
-        let mut reals = Column::new(self.len());
-        for a in 0..D {
-            permute(&mut self.position[a], order, &mut doubles);
-            permute(&mut self.pair_velocity[a], order, &mut reals);
+        let (order, doubles) = (&sorter.order, &mut scratch[..]);
+        for column in &mut self.position {
+            permute(column, order, doubles);
         }
-        permute(&mut self.mass, order, &mut reals);
-        if let Some((density, _)) = &mut self.density {
-            permute(density, order, &mut doubles);
+        if let Some((density, rate)) = &mut self.density {
+            permute(density, order, doubles);
+            permute(rate, order, reinterpret::<R>(doubles));
         }
-        permute(&mut self.id, order, &mut Column::new(order.len()));
+        let reals = reinterpret::<R>(doubles);
+        let scalars = [
+            &mut self.mass,
+            &mut self.volume,
+            &mut self.pressure,
+            &mut self.condensation,
+        ];
+        let vectors = self
+            .pair_velocity
+            .iter_mut()
+            .chain(self.slip_velocity.iter_mut().flatten());
+        for column in scalars.into_iter().chain(vectors) {
+            permute(column, order, reals);
+        }
+        permute(&mut self.id, order, reinterpret::<u32>(&mut scratch[..]));
+    }
+
+    /// Sorts walls that have moved.
+    pub(super) fn sort_again(&mut self, grid: &Grid<D>) {
+        let Some(mut moving) = self.moving.take() else {
+            return;
+        };
+        self.sort(grid, &mut moving.sorter, &mut moving.scratch);
+        for column in &mut moving.acceleration {
+            let reals = reinterpret::<R>(&mut moving.scratch);
+            permute(column, &moving.sorter.order, reals);
+        }
+        moving.travelled = 0.0;
+        self.moving = Some(moving);
     }
 
     /// Bytes held.
@@ -110,6 +142,7 @@ impl<R: Real, const D: usize> Wall<R, D> {
                 .density
                 .as_ref()
                 .map_or(0, |(d, r)| d.bytes() + r.bytes())
+            + self.moving.as_ref().map_or(0, Moving::bytes)
             + self.cells.bytes()
     }
 }

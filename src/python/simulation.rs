@@ -53,6 +53,9 @@ type BodyArrays<'py> = (
     PyReadonlyArray1<'py, f64>,
 );
 
+/// Rotation and displacement of a body.
+type Pose<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray1<f64>>);
+
 /// A simulation in Rust; see `kolk.Simulation`.
 #[pyclass(name = "Simulation", module = "kolk._core")]
 pub(super) struct PySimulation(Simulation);
@@ -305,6 +308,20 @@ impl PySimulation {
         dict.set_item("force", PyArray1::from_vec(py, force))?;
         dict.set_item("moment", PyArray1::from_vec(py, moment))?;
         Ok(dict)
+    }
+
+    /// Rotation (D, D) and displacement (D,) of a wall since the start; `None` for one that does not move.
+    fn pose<'py>(&self, py: Python<'py>, body: &str) -> PyResult<Option<Pose<'py>>> {
+        let Some(pose) = self.0.pose(body).map_err(|e| raise(py, e))? else {
+            return Ok(None);
+        };
+        let d = self.0.dimension();
+        let turn = (0..d * d).map(|k| pose.turn[(k / d, k % d)]).collect();
+        let offset = pose.offset.as_slice()[..d].to_vec();
+        Ok(Some((
+            self.vectors(py, turn)?,
+            PyArray1::from_vec(py, offset),
+        )))
     }
 
     fn memory<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {

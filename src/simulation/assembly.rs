@@ -1,16 +1,18 @@
 //! From a configuration to the passes of a step: the one place that knows which effects there are.
 
 use super::config::{Config, DiffusionForm, EosName, ShiftingForm, ViscosityForm};
-use super::solver::Solver;
+use super::solver::{Body, Solver};
 use super::timers::Phase;
 use crate::effects::{
     Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
     Morris, PairTerm, Shift,
 };
 use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
+use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::Column;
+use crate::prescribed::RigidMotion;
 use crate::simd::Real;
 use crate::step::{DensityRate, Forces, GradientTerm, ShiftTerm};
 use crate::sweep::{Output, Pass, Source, Sweep, Sweeper, slot};
@@ -38,6 +40,37 @@ pub(super) fn equation_of_state(config: &Config) -> AnyEos {
             background: config.background_pressure,
         }),
     }
+}
+
+/// The motions of walls, each with the ids of its body.
+pub(super) fn motions(
+    config: &Config,
+    bodies: &[Body],
+) -> Result<Vec<(std::ops::Range<u32>, RigidMotion)>> {
+    let mut found: Vec<(std::ops::Range<u32>, RigidMotion)> = Vec::new();
+    for motion in &config.motion {
+        let body = bodies.iter().find(|b| b.name == motion.body && !b.fluid);
+        let Some(body) = body else {
+            return Err(Error::Input(format!(
+                "motion: found {:?}, allowed are the names of walls",
+                motion.body
+            )));
+        };
+        if found.iter().any(|(ids, _)| *ids == body.ids) {
+            return Err(Error::Input(format!(
+                "motion: found a second motion of {:?}, allowed is one with several parts",
+                motion.body
+            )));
+        }
+        if found.len() == usize::from(u16::MAX) {
+            return Err(Error::Input(format!(
+                "motion: found more than {} moving walls; make one wall of those that move alike",
+                u16::MAX
+            )));
+        }
+        found.push((body.ids.clone(), motion.build(config.dimension)?));
+    }
+    Ok(found)
 }
 
 /// Columns to be written, the rest empty.
@@ -106,15 +139,19 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     &fluid.condensation,
                     &fluid.pair_velocity,
                 );
-                let target = Source::new(&wall.position, &wall.cells)
+                let mut target = Source::new(&wall.position, &wall.cells)
                     .with(slot::VOLUME, &wall.mass)
                     .with_vector(slot::VELOCITY, &wall.pair_velocity);
+                if let Some(moving) = &wall.moving {
+                    target = target.with_vector(slot::GRADIENT, &moving.acceleration);
+                }
                 let pass = Extrapolation {
                     gravity: self.motion.gravity,
                     eos: self.motion.eos,
                     at_rest: self.motion.eos.condensation(0.0),
                     suction: config.suction.unwrap_or(self.grid.is_periodic()),
                     no_slip: config.slip == Slip::No,
+                    accelerated: wall.moving.is_some(),
                 };
                 let columns = [&mut wall.pressure, &mut wall.condensation, &mut wall.volume];
                 let slip = wall
@@ -246,7 +283,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 self.rates_with(Antuono::new(delta, h, c0), dt)
             }
             Some((DiffusionForm::Fourtakas, delta)) => {
-                self.rates_with(Fourtakas::<D>::new(delta, h, c0, c.gamma, c.gravity()), dt);
+                self.rates_with(
+                    Fourtakas::<D>::new(delta, h, c0, c.gamma, self.motion.gravity),
+                    dt,
+                );
             }
         }
         self.timers.book(Phase::Continuity);

@@ -119,6 +119,22 @@ impl<R: Real, const D: usize> Solver<R, D> {
             put("wall_pressure", widen(&wall.pressure));
             put("wall_volume", widen(&wall.volume));
             put("wall_condensation", widen(&wall.condensation));
+            for (a, column) in wall.slip_velocity.iter().flatten().enumerate() {
+                put(&format!("wall_slip_velocity_{a}"), widen(column));
+            }
+            if let Some(moving) = &wall.moving {
+                for a in 0..D {
+                    put(
+                        &format!("wall_position_{a}"),
+                        Entry::Reals(wall.position[a].to_vec()),
+                    );
+                    put(&format!("wall_velocity_{a}"), widen(&wall.pair_velocity[a]));
+                }
+                put("wall_travelled", Entry::Reals(vec![moving.travelled]));
+                put("wall_mass", widen(&wall.mass));
+                put("wall_id", integers(&wall.id));
+                put("wall_cells", integers(&wall.cells.offsets));
+            }
             if let Some((density, rate)) = &wall.density {
                 put("wall_density", Entry::Reals(density.to_vec()));
                 put("wall_density_rate", widen(rate));
@@ -178,6 +194,26 @@ impl<R: Real, const D: usize> Solver<R, D> {
             from.column("wall_pressure", &mut wall.pressure)?;
             from.column("wall_volume", &mut wall.volume)?;
             from.column("wall_condensation", &mut wall.condensation)?;
+            for (a, column) in wall.slip_velocity.iter_mut().flatten().enumerate() {
+                from.column(&format!("wall_slip_velocity_{a}"), column)?;
+            }
+            let n = wall.len();
+            if let Some(moving) = &mut wall.moving {
+                for a in 0..D {
+                    from.column(&format!("wall_position_{a}"), &mut wall.position[a])?;
+                    from.column(&format!("wall_velocity_{a}"), &mut wall.pair_velocity[a])?;
+                }
+                moving.travelled = from.reals("wall_travelled", 1)?[0];
+                from.column("wall_mass", &mut wall.mass)?;
+                from.table("wall_id", &mut wall.id, n)?;
+                from.table("wall_cells", &mut wall.cells.offsets, n)?;
+                if !wall.cells.offsets.is_sorted() {
+                    return Err(Error::Input(
+                        "checkpoint: the walls' cells are not in order; the file is damaged"
+                            .to_owned(),
+                    ));
+                }
+            }
             if let Some((density, rate)) = &mut wall.density {
                 from.column("wall_density", density)?;
                 from.column("wall_density_rate", rate)?;
@@ -197,6 +233,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             finite: c[3] != 0,
         };
         self.steps_by_limit.copy_from_slice(&c[4..]);
+        self.set_gravity(self.time);
         self.sweeper.wipe();
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
+use crate::prescribed::{MotionConfig, SignalConfig};
 use crate::walls::{Slip, WallMethod};
 use serde::{Deserialize, Serialize};
 
@@ -21,6 +22,12 @@ pub struct Config {
     /// Gravity in m/s²; absent: none.
     #[serde(default)]
     pub gravity: Option<Vec<f64>>,
+    /// What gravity changes by in the course of time: each part a signal along a direction.
+    #[serde(default)]
+    pub gravity_over_time: Vec<GravityConfig>,
+    /// Walls that move.
+    #[serde(default)]
+    pub motion: Vec<MotionConfig>,
     /// Per axis `[low, high]` in m where it is periodic.
     #[serde(default)]
     pub periodic: Vec<Option<[f64; 2]>>,
@@ -66,6 +73,16 @@ pub struct Config {
 
 fn seven() -> f64 {
     7.0
+}
+
+/// A part of gravity that depends on time.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct GravityConfig {
+    /// Where it acts.
+    pub direction: Vec<f64>,
+    /// Its strength in m/s² per length of the direction.
+    pub signal: SignalConfig,
 }
 
 /// Equations of state by name.
@@ -231,6 +248,20 @@ impl Config {
                 "gravity: found {g:?}, allowed are {} finite numbers",
                 self.dimension
             )));
+        }
+        for part in &self.gravity_over_time {
+            if part.direction.len() != self.dimension
+                || part.direction.iter().any(|g| !g.is_finite())
+            {
+                return Err(Error::Input(format!(
+                    "gravity_over_time.direction: found {:?}, allowed are {} finite numbers",
+                    part.direction, self.dimension
+                )));
+            }
+            part.signal.build("gravity_over_time")?;
+        }
+        for motion in &self.motion {
+            motion.build(self.dimension)?;
         }
         if !self.periodic.is_empty() && self.periodic.len() != self.dimension {
             return Err(Error::Input(format!(

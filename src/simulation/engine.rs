@@ -7,6 +7,7 @@ use super::sample::Sample;
 use super::solver::{Body, Progress, Solver};
 use crate::error::{Error, Result};
 use crate::particles::Given;
+use crate::prescribed::Pose;
 use crate::simd::Real;
 use crate::step::Limit;
 use std::time::Duration;
@@ -86,6 +87,7 @@ trait Engine: Send + Sync {
     fn diagnostics(&self) -> Diagnostics;
     fn sample(&self, points: &[f64]) -> Samples;
     fn force_on(&self, ids: &std::ops::Range<u32>) -> (Vec<f64>, Vec<f64>);
+    fn pose(&self, body: &Body) -> Option<Pose>;
     fn save(&self) -> Entries;
     fn restore(&mut self, entries: &Entries) -> Result<()>;
     fn status(&self) -> Status;
@@ -147,6 +149,10 @@ impl<R: Real, const D: usize> Engine for Solver<R, D> {
     fn force_on(&self, ids: &std::ops::Range<u32>) -> (Vec<f64>, Vec<f64>) {
         let (force, moment) = Solver::force_on(self, ids);
         (force.to_vec(), moment)
+    }
+    fn pose(&self, body: &Body) -> Option<Pose> {
+        let moving = self.wall.as_ref()?.moving.as_ref()?;
+        moving.pose(body.ids.start, self.now())
     }
     fn save(&self) -> Entries {
         Solver::save(self)
@@ -229,22 +235,22 @@ impl Simulation {
             .build()
             .map_err(|e| Error::Input(format!("threads: {threads} could not be started: {e}")))?;
         let threads = pool.current_num_threads();
-        let engine: Box<dyn Engine> = pool.install(|| -> Box<dyn Engine> {
-            match (dimension, precision) {
-                (2, Precision::F64) => {
-                    Box::new(Solver::<f64, 2>::new(config, table, &fluid, &wall, threads))
-                }
-                (2, Precision::Mixed) => {
-                    Box::new(Solver::<f32, 2>::new(config, table, &fluid, &wall, threads))
-                }
-                (_, Precision::F64) => {
-                    Box::new(Solver::<f64, 3>::new(config, table, &fluid, &wall, threads))
-                }
-                (_, Precision::Mixed) => {
-                    Box::new(Solver::<f32, 3>::new(config, table, &fluid, &wall, threads))
-                }
-            }
-        });
+        let engine: Box<dyn Engine> = pool.install(|| -> Result<Box<dyn Engine>> {
+            Ok(match (dimension, precision) {
+                (2, Precision::F64) => Box::new(Solver::<f64, 2>::new(
+                    config, table, &fluid, &wall, threads,
+                )?),
+                (2, Precision::Mixed) => Box::new(Solver::<f32, 2>::new(
+                    config, table, &fluid, &wall, threads,
+                )?),
+                (_, Precision::F64) => Box::new(Solver::<f64, 3>::new(
+                    config, table, &fluid, &wall, threads,
+                )?),
+                (_, Precision::Mixed) => Box::new(Solver::<f32, 3>::new(
+                    config, table, &fluid, &wall, threads,
+                )?),
+            })
+        })?;
         Ok(Simulation {
             engine,
             pool,
@@ -304,6 +310,12 @@ impl Simulation {
             )));
         }
         Ok(self.pool.install(|| self.engine.force_on(&body.ids)))
+    }
+
+    /// Where a wall body in prescribed motion is and how it moves; `None` for one at rest.
+    pub fn pose(&self, name: &str) -> Result<Option<Pose>> {
+        let body = self.find(name)?;
+        Ok((!body.fluid).then(|| self.engine.pose(body)).flatten())
     }
 
     /// The whole state.

@@ -5,7 +5,9 @@ mod checkpoint;
 mod config;
 mod diagnostics;
 mod engine;
+mod gravity;
 mod inspect;
+mod reaction;
 mod sample;
 mod solver;
 mod timers;
@@ -13,7 +15,7 @@ mod timers;
 pub use checkpoint::{Entries, Entry};
 pub use config::{
     ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName,
-    LaminarViscosityConfig, ShiftingConfig, ShiftingForm, ViscosityForm, WallConfig,
+    GravityConfig, LaminarViscosityConfig, ShiftingConfig, ShiftingForm, ViscosityForm, WallConfig,
 };
 pub use diagnostics::Diagnostics;
 pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulation, Status};

@@ -1,4 +1,4 @@
-//! The fluid's fields at points, and its force on walls.
+//! The fluid's fields at points.
 
 use super::solver::Solver;
 use crate::kernel::KernelName;
@@ -101,71 +101,5 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         fill
-    }
-
-    /// Force and moment about the origin that the fluid's pressure exerts on the wall particles `ids`, by action and
-    /// reaction of the pair forces on the fluid: `Σ_w Σ_f V_f V_w (p_f + p_w) ∇W_fw`. Moment: one number in 2D.
-    pub fn force_on(&self, ids: &std::ops::Range<u32>) -> ([f64; D], Vec<f64>) {
-        let moments = if D == 3 { 3 } else { 1 };
-        let Some(wall) = self.wall.as_ref().filter(|_| self.primed) else {
-            return ([0.0; D], vec![0.0; moments]);
-        };
-        let (fluid, kernel, h) = (&self.fluid, self.kernel, self.config.smoothing_length);
-        let reach2 = (h * kernel.support()).powi(2);
-        let cells = &wall.cells;
-        let per_cell: Vec<[f64; 6]> = (0..cells.count())
-            .into_par_iter()
-            .map(|cell| {
-                let mut total = [0.0; 6];
-                let own = cells.particles(cell, cell + 1);
-                if own.is_empty() {
-                    return total;
-                }
-                for run in self.grid.around(cell).iter() {
-                    for j in fluid.cells.particles(run.first, run.end) {
-                        let y: [f64; D] =
-                            std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
-                        for i in own.clone().filter(|&i| ids.contains(&wall.id[i])) {
-                            let d: [f64; D] = std::array::from_fn(|a| y[a] - wall.position[a][i]);
-                            let r2: f64 = d.iter().map(|d| d * d).sum();
-                            if r2 >= reach2 || r2 == 0.0 {
-                                continue;
-                            }
-                            let r = r2.sqrt();
-                            let strength = (fluid.volume[j] * wall.volume[i]).to_f64()
-                                * (fluid.pressure[j] + wall.pressure[i]).to_f64()
-                                * kernel.gradient(D, r, h)
-                                / r;
-                            let f: [f64; D] = std::array::from_fn(|a| strength * d[a]);
-                            for a in 0..D {
-                                total[a] += f[a];
-                            }
-                            let x: [f64; D] = std::array::from_fn(|a| wall.position[a][i]);
-                            if D == 3 {
-                                total[3] += x[1] * f[2] - x[2] * f[1];
-                                total[4] += x[2] * f[0] - x[0] * f[2];
-                            }
-                            total[5] += x[0] * f[1] - x[1] * f[0];
-                        }
-                    }
-                }
-                total
-            })
-            .collect();
-        let mut total = [0.0; 6];
-        for cell in &per_cell {
-            for k in 0..6 {
-                total[k] += cell[k];
-            }
-        }
-        let force = std::array::from_fn(|a| total[a]);
-        (
-            force,
-            if D == 3 {
-                total[3..].to_vec()
-            } else {
-                vec![total[5]]
-            },
-        )
     }
 }

@@ -1,12 +1,13 @@
 //! The loop: one step is a screen.
 
 use super::config::{Config, ViscosityForm};
+use super::gravity::Gravity;
 use super::timers::{Phase, Timers};
 use crate::effects::fastest_decay;
 use crate::error::{Error, Instability, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
-use crate::particles::{Fluid, Given, Wall};
+use crate::particles::{Fluid, Given, Moving, Wall};
 use crate::simd::Real;
 use crate::step::apply_shift;
 use crate::step::{Limit, Limits, Motion, State};
@@ -41,6 +42,8 @@ pub struct Solver<R, const D: usize> {
     pub(super) fluid: Fluid<R, D>,
     pub(super) wall: Option<Wall<R, D>>,
     pub(super) motion: Motion<D>,
+    /// Where gravity depends on time.
+    pub(super) gravity: Option<Gravity<D>>,
     pub(super) sweeper: Sweeper<R>,
     pub(super) limits: Limits,
     pub(super) kernel: KernelName,
@@ -78,7 +81,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         fluid: &Given,
         wall: &Given,
         threads: usize,
-    ) -> Self {
+    ) -> Result<Self> {
         let h = config.smoothing_length;
         let support = h * config.kernel.support();
         let mut low = [f64::INFINITY; D];
@@ -97,7 +100,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let grid = Grid::new(low, high, support * (1.0 + SKIN), config.period(), n);
         let wall_config = config.wall.filter(|_| !wall.mass.is_empty());
         let with_gradient = super::assembly::needs_gradient(&config);
-        let set_of_walls = wall_config.map(|w| {
+        let mut set_of_walls = wall_config.map(|w| {
             Wall::new(
                 wall,
                 &grid,
@@ -105,7 +108,14 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 w.method == WallMethod::Dynamic,
             )
         });
-        Solver {
+        let motions = super::assembly::motions(&config, &bodies)?;
+        if let Some(set) = &mut set_of_walls
+            && !motions.is_empty()
+        {
+            set.moving = Some(Moving::new(wall, motions));
+        }
+        Ok(Solver {
+            gravity: Gravity::new(&config)?,
             motion: Motion {
                 gravity: config.gravity(),
                 eos: super::assembly::equation_of_state(&config),
@@ -142,7 +152,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             skin: SKIN * support,
             mach_max: 0.0,
             timers: Timers::default(),
-        }
+        })
     }
 
     /// Steps until `until` exactly, or until `max_steps` or `patience` is used up.
@@ -166,6 +176,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             let (dt, limit, last) = self.choose_time_step(until);
             self.one_step(dt)?;
             self.time = if last { until } else { self.time + dt };
+            self.set_gravity(self.time);
             self.time_step = dt;
             self.limit = limit;
             self.steps_by_limit[limit as usize] += 1;
@@ -194,6 +205,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
     /// Rates of the state at the start, so that the first step is like all others.
     fn prime(&mut self) -> Result<()> {
         self.timers.start();
+        self.set_gravity(self.time);
+        self.move_walls(self.time);
         self.sort(false);
         if !self.motion.first_half(&mut self.fluid, 0.0) {
             return Err(self.trouble());
@@ -214,11 +227,13 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if 2.0 * (self.travelled + 1.5 * dt * self.state.speed) > self.skin {
             self.sort(false);
         }
+        self.set_gravity(self.time + 0.5 * dt);
         if !self.motion.first_half(&mut self.fluid, dt) {
             return Err(self.trouble());
         }
         self.travelled += 0.5 * dt * self.state.speed;
         self.timers.book(Phase::Integrate);
+        self.move_walls(self.time + 0.5 * dt);
         self.update_walls();
         self.sum_forces();
         let speed = self.motion.second_half(&mut self.fluid, dt);
@@ -227,6 +242,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if 2.0 * self.travelled > self.skin {
             self.sort(true);
         }
+        self.move_walls(self.time + dt);
         self.sum_density_rates(dt);
         self.advance_walls(dt);
         self.state = self.motion.finish(&mut self.fluid, dt);
@@ -238,6 +254,16 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.check()?;
         self.timers.book(Phase::Guard);
         Ok(())
+    }
+
+    /// Walls as they are prescribed at `time`.
+    pub(super) fn move_walls(&mut self, time: f64) {
+        if let Some(wall) = &mut self.wall
+            && wall.moving.is_some()
+        {
+            wall.move_to(time, &self.grid, self.skin);
+            self.timers.book(Phase::Walls);
+        }
     }
 
     fn sort(&mut self, mid_step: bool) {

@@ -11,9 +11,11 @@ mod gather;
 mod geometry;
 mod moment;
 mod pair;
+mod single;
 mod slab;
 
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
+pub use single::Single;
 
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};

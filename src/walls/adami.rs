@@ -5,8 +5,9 @@ use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
 
 /// For every wall particle `w`, over the fluid `f`:
-/// `p_w = [Σ V_f p_f W + g·Σ V_f ρ_f r_wf W] / Σ V_f W`; its density follows from the equation of state, and at a
-/// no-slip wall the velocity that viscosity sees is `2 u_wall - Σ V_f u_f W / Σ V_f W`.
+/// `p_w = [Σ V_f p_f W + (g - a_w)·Σ V_f ρ_f r_wf W] / Σ V_f W` with the wall's own acceleration `a_w`; its density
+/// follows from the equation of state, and at a no-slip wall the velocity that viscosity sees is
+/// `2 u_wall - Σ V_f u_f W / Σ V_f W`.
 ///
 /// Writes pressure, condensation, volume, and with `no_slip` the components of that velocity.
 pub struct Extrapolation<const D: usize> {
@@ -20,6 +21,8 @@ pub struct Extrapolation<const D: usize> {
     pub suction: bool,
     /// Whether the fluid sticks.
     pub no_slip: bool,
+    /// Whether walls have an acceleration (in the slot of the gradient).
+    pub accelerated: bool,
 }
 
 impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
@@ -62,8 +65,15 @@ impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
         let mut pressure = 0.0;
         if weight > 1e-12 {
             let mut head = 0.0;
+            let mut gravity = self.gravity;
+            if self.accelerated {
+                let acceleration = own.gradient();
+                for a in 0..D {
+                    gravity[a] -= acceleration[a].to_f64();
+                }
+            }
             for a in 0..D {
-                head += self.gravity[a] * sums.vector[a].sum().to_f64();
+                head += gravity[a] * sums.vector[a].sum().to_f64();
             }
             pressure =
                 (sums.gradient[0].sum().to_f64() + self.eos.reference_density() * head) / weight;

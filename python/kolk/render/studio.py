@@ -40,7 +40,8 @@ class Studio:
         self.flat = int(scene.dimension) == 2
         self.asked = records.comparisons(run)
         self.scales = _scales(run)
-        gravity = None if scene.gravity is None else np.asarray(scene.gravity, float)
+        start = scene.gravity_at_start
+        gravity = None if start is None else np.asarray(start, float)
         moved = gravity is not None and np.any(gravity)
         self.vertical = int(np.argmax(np.abs(gravity))) if moved and gravity is not None else 2
 

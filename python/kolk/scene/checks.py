@@ -12,7 +12,8 @@ from kolk.errors import Problem, SceneError
 from .base import nearest, shown
 from .expression import Expression
 from .model import Scene
-from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, Wall
+from .motion import Gravity
+from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, PressureProbe, Wall
 
 MATERIAL = ("density", "sound_speed", "viscosity", "eos", "gamma")
 
@@ -60,7 +61,14 @@ def _lengths(scene: Scene) -> Iterator[Problem]:
         if isinstance(value, Expression) and d == 2 and "z" in value.names:
             yield Problem(path, f"found {value}: there is no z in 2D")
 
-    yield from vector(("gravity",), scene.gravity)
+    if isinstance(scene.gravity, Gravity):
+        for path, value in scene.gravity.vectors():
+            yield from vector(("gravity", *path), value)
+    else:
+        yield from vector(("gravity",), scene.gravity)
+    for wall in scene.wall:
+        for path, value in [] if wall.motion is None else wall.motion.vectors():
+            yield from vector(("wall", wall.name, "motion", *path), value)
     for table, body in _bodies(scene):
         here: tuple[str | int, ...] = (table, body.name)
         if body.shape is not None and d not in body.shape.shape.dimensions():
@@ -86,6 +94,7 @@ def _lengths(scene: Scene) -> Iterator[Problem]:
     for probe in scene.probe:
         here = ("probe", probe.name, probe.kind)
         yield from vector((*here, "at"), getattr(probe.what, "at", None))
+        yield from vector((*here, "about"), getattr(probe.what, "about", None))
         yield from vector((*here, "direction"), getattr(probe.what, "direction", None))
         if d == 2 and isinstance(probe.what, FrontProbe) and probe.what.axis == "z":
             yield Problem((*here, "axis"), 'found "z", must be "x" or "y" in 2D')
@@ -110,6 +119,12 @@ def _materials(scene: Scene) -> Iterator[Problem]:
                 f'found "{wall.slip}", but \'{scene.wall[0].name}\' has "{scene.wall[0].slip}": '
                 "all walls of a scene slip alike",
             )
+    for wall in scene.wall:
+        if wall.motion is not None and wall.velocity is not None:
+            yield Problem(
+                ("wall", wall.name, "velocity"),
+                "found beside 'motion': give a wall one of them",
+            )
     if not scene.weight.any():
         for fluid in scene.fluid:
             if fluid.pressure == "hydrostatic":
@@ -128,8 +143,9 @@ def _probes(scene: Scene) -> Iterator[Problem]:
         what = probe.what
         if isinstance(what, FrontProbe) and what.body is not None and what.body not in fluids:
             yield Problem((*here, "body"), _no_body(what.body, "fluid", fluids))
-        if isinstance(what, ForceProbe) and what.body not in walls:
-            yield Problem((*here, "body"), _no_body(what.body, "wall", walls))
+        wall = what.body if isinstance(what, (ForceProbe, PressureProbe)) else None
+        if wall is not None and wall not in walls:
+            yield Problem((*here, "body"), _no_body(wall, "wall", walls))
         if isinstance(what, LevelProbe) and what.direction is None and not scene.weight.any():
             yield Problem(
                 (*here, "direction"), "is missing: without gravity nothing says what is up"
@@ -153,7 +169,9 @@ def _periods(scene: Scene) -> Iterator[Problem]:
 
 
 def _numerics(scene: Scene) -> Iterator[Problem]:
-    if scene.numerics.density_diffusion == "fourtakas" and not np.any(scene.gravity or 0.0):
+    if scene.numerics.density_diffusion == "fourtakas" and not np.any(
+        scene.gravity_at_start or 0.0
+    ):
         yield Problem(
             ("numerics", "density_diffusion"),
             'found "fourtakas", which subtracts the hydrostatic part, but the scene has no '

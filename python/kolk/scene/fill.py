@@ -76,7 +76,7 @@ def fill(scene: Scene) -> Filling:
     walls = [_wall_part(scene, w) for w in scene.wall]
     check_places(scene, [p.position for p in fluids], [p.position for p in walls])
     velocities = [_velocity(scene, f, p.position) for f, p in zip(scene.fluid, fluids, strict=True)]
-    speed = _expected_speed(scene, velocities)
+    speed = _expected_speed(scene, velocities, walls)
     sound_speed, expected = _sound_speed(scene, fluids, speed)
     bodies = [
         _fluid_body(scene, f, p, v, sound_speed)
@@ -201,9 +201,12 @@ def _velocity(scene: Scene, fluid: Fluid, position: FloatArray) -> FloatArray:
     return np.stack(parts, axis=1)
 
 
-def _expected_speed(scene: Scene, velocities: list[FloatArray]) -> float:
+def _expected_speed(scene: Scene, velocities: list[FloatArray], walls: list[_Part]) -> float:
     speeds = [float(np.sqrt(np.max(np.sum(v**2, axis=1)))) for v in velocities]
     speeds += [float(np.linalg.norm(w.velocity)) for w in scene.wall if w.velocity is not None]
+    for wall, part in zip(scene.wall, walls, strict=True):
+        if wall.motion is not None:
+            speeds.append(wall.motion.largest_speed(part.position))
     return max(*speeds, scene.numerics.expected_speed or 0.0, 0.0)
 
 

@@ -12,6 +12,7 @@ from kolk.errors import KolkError, SceneError
 
 from .base import nearest
 from .model import Scene
+from .motion import place_files
 
 if sys.version_info >= (3, 11):
     import tomllib
@@ -48,6 +49,7 @@ def loads(text: str, folder: str | Path = ".") -> Scene:
         for entry in entries if isinstance(entries, list) else []:
             if isinstance(entry, dict) and isinstance(entry.get("particles"), str):
                 entry["particles"] = str(Path(folder) / entry["particles"])
+    place_files(data, Path(folder))
     if isinstance(data.get("probe"), dict):
         raise SceneError("probe: found one table, must be a list: write [[probe]]")
     return Scene(**data)

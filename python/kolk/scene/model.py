@@ -14,7 +14,8 @@ from pydantic import Field
 
 from kolk.errors import Problem, SceneError
 
-from .base import Model, Name, Positive, Real, Text, Vector, nearest
+from .base import Model, Name, Positive, Real, Text, nearest
+from .motion import Gravity, GravityKey
 from .parts import Fluid, Numerics, Output, Periodic, Probe, Wall
 
 if TYPE_CHECKING:
@@ -57,7 +58,9 @@ class Scene(Model):
         default=None, description="smoothing length over spacing; 2 in 2D and 1.7 in 3D if absent"
     )
     kernel: Literal["wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = "wendland-c2"
-    gravity: Vector | None = Field(default=None, description="m/s^2; leave it out for none")
+    gravity: GravityKey | None = Field(
+        default=None, description="m/s^2; a table if it changes with time; leave it out for none"
+    )
     until: Positive = Field(description="end of the run, s")
     periodic: Periodic | None = Field(
         default=None, description="axes along which the domain repeats"
@@ -107,9 +110,15 @@ class Scene(Model):
         return none if self.periodic is None else list(self.periodic.axes(self.dimension))
 
     @property
+    def gravity_at_start(self) -> tuple[float, ...] | None:
+        """Gravity (D,) in m/s^2 at t = 0 s, None without any."""
+        return self.gravity.at_start() if isinstance(self.gravity, Gravity) else self.gravity
+
+    @property
     def weight(self) -> np.ndarray[tuple[int], np.dtype[np.float64]]:
         """The part of gravity (D,) in m/s^2 that makes a depth: none along a periodic axis."""
-        gravity = np.zeros(self.dimension) if self.gravity is None else np.array(self.gravity)
+        start = self.gravity_at_start
+        gravity = np.zeros(self.dimension) if start is None else np.array(start)
         return np.where([p is None for p in self.periodic_axes], gravity, 0.0)
 
     @property

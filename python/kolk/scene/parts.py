@@ -29,6 +29,7 @@ from .base import (
 )
 from .composed import ShapeTable
 from .expression import Expression
+from .motion import Motion
 
 FloatArray = npt.NDArray[np.float64]
 OfPosition = Callable[[FloatArray], FloatArray]
@@ -229,6 +230,7 @@ class Wall(_Body):
     velocity: Vector | None = Field(
         default=None, description="m/s: the wall slides in its own plane; its particles stay"
     )
+    motion: Motion | None = Field(default=None, description="how it moves; at rest if absent")
 
     @classmethod
     def from_arrays(
@@ -249,6 +251,7 @@ class PressureProbe(Model):
     diameter: Positive | None = Field(
         default=None, description="of the sensor's face, m; a point if absent"
     )
+    body: Text | None = Field(default=None, description="name of a wall that carries it along")
 
 
 class LevelProbe(Model):
@@ -277,6 +280,9 @@ class ForceProbe(Model):
     """Force of the fluid on a wall."""
 
     body: Text = Field(description="name of a wall")
+    about: Vector | None = Field(
+        default=None, description="point of the moment, m; the origin if absent"
+    )
 
 
 class FieldProbe(Model):
