@@ -2,7 +2,7 @@
 
 use super::PairTerm;
 use crate::simd::{Lanes, Real, dot};
-use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
+use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 
 /// Monaghan's artificial viscosity (Monaghan 1992): between approaching particles
 /// `Π_ij = (-α c0 μ_ij + β μ_ij²) / ρ̄` with `μ_ij = h u_ij·r_ij / (r² + 0.01 h²)`, and the force density
@@ -30,12 +30,20 @@ impl ArtificialViscosity {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for ArtificialViscosity {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
         let approach = dot(&relative_velocity(own, other), &pair.separation).min(L::zero());
         let one = L::constant(1.0);
@@ -50,9 +58,6 @@ impl<R: Real, const D: usize> PairTerm<R, D> for ArtificialViscosity {
             * other_density
             * regularised
             * inverse;
-        let push = other.volume() * density * viscous * pair.slope;
-        for a in 0..D {
-            sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
-        }
+        tally.push(density * viscous * pair.slope);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::PairTerm;
 use crate::simd::{Lanes, Real, dot};
-use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
+use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 
 /// Strength in units of `c0²`: particles that approach at a tenth of the speed of sound are kept apart.
 const STRENGTH: f64 = 0.3;
@@ -47,20 +47,25 @@ impl Contact {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Contact {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
         let depth = L::constant(1.0) - pair.squared * L::constant(self.inverse_reach2);
         let approach = dot(&relative_velocity(own, other), &pair.separation);
         // Never a pull: a dashpot must not hold together what parts.
         let dashpot = (L::constant(1.0) - L::constant(self.damping) * approach).max(L::zero());
-        let push = L::constant(self.strength) * other.volume() * depth.max(L::zero()) * dashpot;
-        for a in 0..D {
-            sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
-        }
+        tally.push(L::constant(self.strength) * depth.max(L::zero()) * dashpot);
     }
 }

@@ -7,19 +7,12 @@
 
 use super::PairTerm;
 use crate::simd::{Lanes, Real, dot};
-use crate::sweep::{Other, Pair, Splat, Sums};
+use crate::sweep::{Other, Pair, Splat, Sums, Tally, Uses};
 
-/// The term for a difference of condensation beyond the expected one.
+/// The rate for a difference of condensation of 1 beyond the expected one.
 #[inline(always)]
-fn diffuse<L: Lanes, const D: usize>(
-    strength: f64,
-    pair: &Pair<L, D>,
-    other: &Other<L, D>,
-    excess: L,
-    sums: &mut Sums<L, D>,
-) {
-    let rate = L::constant(-2.0 * strength) * other.volume() * pair.slope;
-    sums.scalar = rate.mul_add(excess, sums.scalar);
+fn diffusion<L: Lanes, const D: usize>(strength: f64, pair: &Pair<L, D>) -> L {
+    L::constant(-2.0 * strength) * pair.slope
 }
 
 /// Molteni & Colagrossi 2009: expects no difference. One pass and the cheapest, but it drives fluid at rest under
@@ -77,63 +70,73 @@ impl<const D: usize> Fourtakas<D> {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Molteni {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            scalar: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        diffuse(
-            self.strength,
-            pair,
-            other,
-            other.condensation() - own.condensation(),
-            sums,
-        );
+        let excess = other.condensation() - own.condensation();
+        tally.exchange(diffusion(self.strength, pair) * excess);
     }
 }
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Antuono {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>>(
-        &self,
-        pair: &Pair<L, D>,
-        own: &Splat<L, D>,
-        other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
-    ) {
-        let (g, k) = (own.gradient(), other.gradient());
-        let gradients: [L; D] = std::array::from_fn(|a| g[a] + k[a]);
-        let expected = L::constant(-0.5) * dot(&gradients, &pair.separation);
-        diffuse(
-            self.strength,
-            pair,
-            other,
-            other.condensation() - own.condensation() - expected,
-            sums,
-        );
+    fn uses(&self) -> Uses {
+        Uses {
+            scalar: true,
+            ..Uses::NONE
+        }
     }
-}
 
-impl<R: Real, const D: usize> PairTerm<R, D> for Fourtakas<D> {
     #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
+    ) {
+        let (g, k) = (own.gradient(), other.gradient());
+        let gradients: [L; D] = std::array::from_fn(|a| g[a] + k[a]);
+        let expected = L::constant(-0.5) * dot(&gradients, &pair.separation);
+        let excess = other.condensation() - own.condensation() - expected;
+        tally.exchange(diffusion(self.strength, pair) * excess);
+    }
+}
+
+impl<R: Real, const D: usize> PairTerm<R, D> for Fourtakas<D> {
+    #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            scalar: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>>(
+        &self,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
         let x = -dot(&self.slope.map(L::constant), &pair.separation);
-        let expected = x * x.mul_add(L::constant(self.curvature), L::constant(1.0));
-        diffuse(
-            self.strength,
-            pair,
-            other,
-            other.condensation() - own.condensation() - expected,
-            sums,
-        );
+        let rate = diffusion(self.strength, pair);
+        tally.exchange(rate * (other.condensation() - own.condensation() - x));
+        // The second order is the same seen from either.
+        tally.source(-(rate * L::constant(self.curvature) * x * x));
     }
 }
 
@@ -144,27 +147,34 @@ pub struct DensityGradient;
 
 impl<R: Real, const D: usize> PairTerm<R, D> for DensityGradient {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            gradient: true,
+            moment: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        let r = &pair.separation;
-        let weight = other.volume() * pair.slope;
-        let difference = weight * (other.condensation() - own.condensation());
-        for a in 0..D {
-            sums.gradient[a] = difference.mul_add(r[a], sums.gradient[a]);
-        }
-        sums.add_moment(-weight, r);
+        tally.gradient(
+            pair.slope * (other.condensation() - own.condensation()),
+            pair,
+        );
+        tally.moment(-pair.slope, pair);
     }
 }
 
 impl DensityGradient {
     /// The gradient from its sums; not renormalised where the neighbours do not span the space.
     #[inline(always)]
-    pub fn finish<L: Lanes, const D: usize>(sums: &Sums<L, D>) -> [L::Real; D] {
-        sums.renormalise(sums.gradient.map(|g| g.sum()))
+    pub fn finish<R: Real, const D: usize>(sums: &Sums<R, D>) -> [R; D] {
+        sums.renormalise(sums.gradient)
     }
 }

@@ -3,7 +3,7 @@
 use super::PairTerm;
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, Real, dot};
-use crate::sweep::{Other, Pair, Splat, Sums, relative_velocity};
+use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 use nalgebra::SMatrix;
 
 /// What keeps `1/r²` finite for coincident particles, in `h²`. No larger: the customary 0.01 takes 1.3 % of the
@@ -51,46 +51,52 @@ impl MonaghanGingold {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Morris {
     #[inline(always)]
-    fn add<L: Lanes<Real = R>>(
-        &self,
-        pair: &Pair<L, D>,
-        own: &Splat<L, D>,
-        other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
-    ) {
-        let densities = L::constant(2.0) + own.condensation() + other.condensation();
-        let regularised = (pair.squared + L::constant(self.eta2)).recip();
-        let drag = L::constant(self.viscosity)
-            * densities
-            * other.volume()
-            * pair.slope
-            * pair.squared
-            * regularised;
-        let u = relative_velocity(own, other);
-        for a in 0..D {
-            sums.vector[a] = drag.mul_add(u[a], sums.vector[a]);
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..Uses::NONE
         }
     }
-}
 
-impl<R: Real, const D: usize> PairTerm<R, D> for MonaghanGingold {
     #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
+    ) {
+        let densities = L::constant(2.0) + own.condensation() + other.condensation();
+        let regularised = (pair.squared + L::constant(self.eta2)).recip();
+        let drag =
+            L::constant(self.viscosity) * densities * pair.slope * pair.squared * regularised;
+        tally.drag(drag, &relative_velocity(own, other));
+    }
+}
+
+impl<R: Real, const D: usize> PairTerm<R, D> for MonaghanGingold {
+    #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>>(
+        &self,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
         // With μ = ν ρ, its mean over the pair times 2 (D+2).
         let densities = L::constant(2.0) + own.condensation() + other.condensation();
         let viscosity = L::constant((D as f64 + 2.0) * self.viscosity) * densities;
         let regularised = (pair.squared + L::constant(self.eta2)).recip();
         let approach = dot(&relative_velocity(own, other), &pair.separation);
-        let push = viscosity * other.volume() * approach * regularised * pair.slope;
-        for a in 0..D {
-            sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
-        }
+        tally.push(viscosity * approach * regularised * pair.slope);
     }
 }
 

@@ -20,29 +20,37 @@ pub use particle_shifting::Shift;
 pub use pressure::Pressure;
 
 use crate::simd::{Lanes, Real};
-use crate::sweep::{Other, Pair, Splat, Sums};
+use crate::sweep::{Other, Pair, Splat, Tally, Uses};
 
-/// A term of a pair sum. `add` must be `#[inline(always)]`.
+/// A term of a pair sum. Methods must be `#[inline(always)]`.
 pub trait PairTerm<R: Real, const D: usize>: Copy + Send + Sync {
-    /// Adds what a vector of neighbours gives.
+    /// Which sums it adds to.
+    fn uses(&self) -> Uses;
+
+    /// Adds what a vector of pairs gives.
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     );
 }
 
 /// An effect that the scene does not call for.
 impl<R: Real, const D: usize> PairTerm<R, D> for () {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses::NONE
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         _: &Pair<L, D>,
         _: &Splat<L, D>,
         _: &Other<L, D>,
-        _: &mut Sums<L, D>,
+        _: &mut Tally<L, D>,
     ) {
     }
 }
@@ -50,15 +58,20 @@ impl<R: Real, const D: usize> PairTerm<R, D> for () {
 /// An effect that depends on the walls of a scene: one test per vector.
 impl<R: Real, A: PairTerm<R, D>, const D: usize> PairTerm<R, D> for Option<A> {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        self.as_ref().map_or(Uses::NONE, A::uses)
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
         if let Some(effect) = self {
-            effect.add(pair, own, other, sums);
+            effect.add(pair, own, other, tally);
         }
     }
 }
@@ -66,14 +79,19 @@ impl<R: Real, A: PairTerm<R, D>, const D: usize> PairTerm<R, D> for Option<A> {
 /// Two effects together.
 impl<R: Real, A: PairTerm<R, D>, B: PairTerm<R, D>, const D: usize> PairTerm<R, D> for (A, B) {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        self.0.uses().and(self.1.uses())
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        self.0.add(pair, own, other, sums);
-        self.1.add(pair, own, other, sums);
+        self.0.add(pair, own, other, tally);
+        self.1.add(pair, own, other, tally);
     }
 }

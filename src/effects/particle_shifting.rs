@@ -7,7 +7,7 @@
 use super::PairTerm;
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, Real};
-use crate::sweep::{Other, Own, Pair, Splat, Sums};
+use crate::sweep::{Other, Own, Pair, Splat, Sums, Tally, Uses};
 
 /// Strength of the term against pairing, and its exponent (Monaghan 2000; Sun et al. 2017).
 const PAIRING: f64 = 0.2;
@@ -69,21 +69,17 @@ impl Shift {
 
     /// The shift of a particle in m, from its sums.
     #[inline(always)]
-    pub fn finish<L: Lanes, const D: usize>(
-        &self,
-        own: &Own<L::Real, D>,
-        sums: &Sums<L, D>,
-    ) -> [L::Real; D] {
-        let zero = L::Real::default();
-        let mut shift = sums.gradient.map(|g| -g.sum());
+    pub fn finish<R: Real, const D: usize>(&self, own: &Own<R, D>, sums: &Sums<R, D>) -> [R; D] {
+        let zero = R::default();
+        let mut shift = sums.gradient.map(|g| -g);
         if self.free_surface {
             let least = sums.least_moment();
-            if least < L::Real::from_f64(SURFACE) {
+            if least < R::from_f64(SURFACE) {
                 return [zero; D];
             }
-            if least < L::Real::from_f64(INTERIOR) {
+            if least < R::from_f64(INTERIOR) {
                 // Along the surface only: the gradient of the concentration is its normal.
-                let normal = sums.vector.map(|v| v.sum());
+                let normal = sums.vector;
                 let (mut square, mut along) = (zero, zero);
                 for a in 0..D {
                     square += normal[a] * normal[a];
@@ -102,10 +98,10 @@ impl Shift {
             square += shift[a] * shift[a];
             speed2 += u[a] * u[a];
         }
-        let strength = L::Real::from_f64(self.strength)
-            + L::Real::from_f64(self.strength_per_speed) * speed2.sqrt();
+        let strength =
+            R::from_f64(self.strength) + R::from_f64(self.strength_per_speed) * speed2.sqrt();
         let length = strength * square.sqrt();
-        let limit = L::Real::from_f64(self.limit);
+        let limit = R::from_f64(self.limit);
         let factor = if length > limit {
             strength * limit / length
         } else {
@@ -117,27 +113,32 @@ impl Shift {
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: self.free_surface,
+            gradient: true,
+            moment: self.free_surface,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         _own: &Splat<L, D>,
-        other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        _other: &Other<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        let r = &pair.separation;
-        let weight = other.volume() * pair.slope;
         let ratio = pair.weight() * L::constant(self.inverse_weight);
         let pairing = ratio
             .squared()
             .squared()
             .mul_add(L::constant(PAIRING), L::constant(1.0));
-        for a in 0..D {
-            let gradient = weight * r[a];
-            sums.vector[a] += gradient;
-            sums.gradient[a] = gradient.mul_add(pairing, sums.gradient[a]);
-        }
+        tally.push(pair.slope);
+        tally.repel(pair.slope * pairing, pair);
         if self.free_surface {
-            sums.add_moment(-weight, r);
+            tally.moment(-pair.slope, pair);
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use super::PairTerm;
 use crate::simd::{Lanes, Real};
-use crate::sweep::{Other, Pair, Splat, Sums};
+use crate::sweep::{Other, Pair, Splat, Tally, Uses};
 
 /// Force density of the pressure, `-Σ V_j (p_i + p_j) ∇W_ij`: the form that is variationally consistent with the
 /// continuity equation of [`super::Continuity`] (Bonet & Lok 1999), antisymmetric for every pair.
@@ -11,16 +11,21 @@ pub struct Pressure;
 
 impl<R: Real, const D: usize> PairTerm<R, D> for Pressure {
     #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..Uses::NONE
+        }
+    }
+
+    #[inline(always)]
     fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        let push = -(other.volume() * (own.pressure() + other.pressure()) * pair.slope);
-        for a in 0..D {
-            sums.vector[a] = push.mul_add(pair.separation[a], sums.vector[a]);
-        }
+        tally.push(-((own.pressure() + other.pressure()) * pair.slope));
     }
 }

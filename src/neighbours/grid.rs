@@ -35,6 +35,26 @@ pub struct Runs<const D: usize> {
     count: usize,
 }
 
+impl<const D: usize> Runs<D> {
+    #[inline(always)]
+    fn none() -> Self {
+        Runs {
+            runs: [Run {
+                first: 0,
+                end: 0,
+                shift: [0.0; D],
+            }; 27],
+            count: 0,
+        }
+    }
+
+    #[inline(always)]
+    fn add(&mut self, first: usize, end: usize, shift: [f64; D]) {
+        self.runs[self.count] = Run { first, end, shift };
+        self.count += 1;
+    }
+}
+
 impl<const D: usize> std::ops::Deref for Runs<D> {
     type Target = [Run<D>];
     #[inline(always)]
@@ -169,53 +189,67 @@ impl<const D: usize> Grid<D> {
     /// The runs of cells that cover the 3^D cells around `cell`, in ascending order of offset.
     #[inline]
     pub fn around(&self, cell: usize) -> Runs<D> {
-        let mut at = [0usize; D];
-        let mut rest = cell;
-        for a in 0..D {
-            at[a] = rest % self.cells[a];
-            rest /= self.cells[a];
-        }
-        let mut runs = Runs {
-            runs: [Run {
-                first: 0,
-                end: 0,
-                shift: [0.0; D],
-            }; 27],
-            count: 0,
-        };
+        let at = self.coordinates(cell);
+        let mut runs = Runs::none();
         for row in 0..3usize.pow(D as u32 - 1) {
-            let mut shift = [0.0; D];
-            let mut base = 0usize;
-            let mut digits = row;
-            let mut stride = self.cells[0];
-            for a in 1..D {
-                let (c, s) = self.neighbour(a, at[a], digits % 3);
-                digits /= 3;
-                base += c * stride;
-                stride *= self.cells[a];
-                shift[a] = s;
-            }
-            let (n, x) = (self.cells[0], at[0]);
-            let mut add = |first: usize, end: usize, s: f64| {
-                shift[0] = s;
-                runs.runs[runs.count] = Run {
-                    first: base + first,
-                    end: base + end,
-                    shift,
-                };
-                runs.count += 1;
-            };
-            if x > 0 && x + 1 < n {
-                add(x - 1, x + 2, 0.0);
-            } else {
-                let (left, left_shift) = self.neighbour(0, x, 0);
-                let (right, right_shift) = self.neighbour(0, x, 2);
-                add(left, left + 1, left_shift);
-                add(x, x + 1, 0.0);
-                add(right, right + 1, right_shift);
-            }
+            self.add_row(&mut runs, &at, row, 0);
         }
         runs
+    }
+
+    /// The runs of cells that cover `cell`, first of all, and those of its neighbours that are ahead of it: of every
+    /// two neighbouring cells, one is ahead of the other.
+    #[inline]
+    pub fn ahead(&self, cell: usize) -> Runs<D> {
+        let at = self.coordinates(cell);
+        let mut runs = Runs::none();
+        let rows = 3usize.pow(D as u32 - 1);
+        self.add_row(&mut runs, &at, rows / 2, 1);
+        for row in rows / 2 + 1..rows {
+            self.add_row(&mut runs, &at, row, 0);
+        }
+        runs
+    }
+
+    /// Number of cells along each axis.
+    pub fn shape(&self) -> [usize; D] {
+        self.cells
+    }
+
+    #[inline(always)]
+    fn coordinates(&self, cell: usize) -> [usize; D] {
+        let mut rest = cell;
+        std::array::from_fn(|a| {
+            let c = rest % self.cells[a];
+            rest /= self.cells[a];
+            c
+        })
+    }
+
+    /// Adds the cells from step `from` (0, 1 or 2) on of the `row`-th of the 3^(D-1) rows around the cell at `at`.
+    #[inline(always)]
+    fn add_row(&self, runs: &mut Runs<D>, at: &[usize; D], row: usize, from: usize) {
+        let mut shift = [0.0; D];
+        let mut base = 0usize;
+        let mut digits = row;
+        let mut stride = self.cells[0];
+        for a in 1..D {
+            let (c, s) = self.neighbour(a, at[a], digits % 3);
+            digits /= 3;
+            base += c * stride;
+            stride *= self.cells[a];
+            shift[a] = s;
+        }
+        let (n, x) = (self.cells[0], at[0]);
+        if x > 0 && x + 1 < n {
+            runs.add(base + x + from - 1, base + x + 2, shift);
+        } else {
+            for step in from..3 {
+                let (c, s) = self.neighbour(0, x, step);
+                shift[0] = s;
+                runs.add(base + c, base + c + 1, shift);
+            }
+        }
     }
 
     /// The cell at `at + step - 1` on axis `a`, and the shift of its particles.

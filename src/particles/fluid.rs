@@ -32,15 +32,29 @@ pub struct Fluid<R, const D: usize> {
     pub gradient: Option<[Column<R>; D]>,
     /// Shift of the present step in m, if the scene calls for particle shifting.
     pub shift: Option<[Column<R>; D]>,
+    /// Sums that a sweep needs on the way and that are of no use afterwards: a symmetric matrix, then a vector, if the
+    /// scene has a sweep that needs them.
+    pub sums: Vec<Column<R>>,
     /// Particles by cell.
     pub cells: Cells,
     sorter: Sorter,
     scratch: Column<f64>,
 }
 
+/// What a scene calls for beyond the columns that every fluid has.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct OptionalColumns {
+    /// [`Fluid::gradient`].
+    pub gradient: bool,
+    /// [`Fluid::shift`].
+    pub shift: bool,
+    /// Number of [`Fluid::sums`].
+    pub sums: usize,
+}
+
 impl<R: Real, const D: usize> Fluid<R, D> {
     /// Takes over the particles given.
-    pub fn new(given: &Given, grid: &Grid<D>, with_gradient: bool, with_shift: bool) -> Self {
+    pub fn new(given: &Given, grid: &Grid<D>, columns: OptionalColumns) -> Self {
         let n = given.mass.len();
         Fluid {
             position: std::array::from_fn(|a| component::<D>(&given.position, a)),
@@ -54,8 +68,9 @@ impl<R: Real, const D: usize> Fluid<R, D> {
             volume: Column::new(n),
             pressure: Column::new(n),
             condensation: Column::new(n),
-            gradient: with_gradient.then(|| vector_columns(n)),
-            shift: with_shift.then(|| vector_columns(n)),
+            gradient: columns.gradient.then(|| vector_columns(n)),
+            shift: columns.shift.then(|| vector_columns(n)),
+            sums: (0..columns.sums).map(|_| Column::new(n)).collect(),
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
             sorter: Sorter::new(n),
             scratch: Column::new(n),
@@ -147,7 +162,8 @@ impl<R: Real, const D: usize> Fluid<R, D> {
         let pairs = D * self.pair_velocity[0].bytes()
             + 3 * self.volume.bytes()
             + self.gradient.as_ref().map_or(0, |g| D * g[0].bytes())
-            + self.shift.as_ref().map_or(0, |s| D * s[0].bytes());
+            + self.shift.as_ref().map_or(0, |s| D * s[0].bytes())
+            + self.sums.iter().map(Column::bytes).sum::<usize>();
         let sort = self.cells.bytes() + self.sorter.bytes() + self.scratch.bytes();
         [
             ("fluid state", state),

@@ -7,7 +7,7 @@ mod parallel;
 mod wall;
 
 pub use column::{Column, PAD};
-pub use fluid::Fluid;
+pub use fluid::{Fluid, OptionalColumns};
 pub use moving::Moving;
 pub use parallel::{GRAIN, Shared, for_ranges, permute, sum};
 pub use wall::Wall;

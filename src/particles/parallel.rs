@@ -21,6 +21,11 @@ impl<T> Shared<T> {
         Shared(column.as_mut_ptr())
     }
 
+    /// The same, of a column known by its first number.
+    pub(crate) fn from_raw(column: *mut T) -> Self {
+        Shared(column)
+    }
+
     /// The part of the column that a task works on.
     ///
     /// # Safety

@@ -46,9 +46,18 @@ macro_rules! scalar {
                 unsafe { *to = self }
             }
             #[inline(always)]
-            unsafe fn compress_store(self, _mask: bool, to: *mut $t) {
+            unsafe fn compress_store(self, _bits: u32, to: *mut $t) {
                 // SAFETY: the caller promises one writable number.
                 unsafe { *to = self }
+            }
+            #[inline(always)]
+            fn bits(mask: bool) -> u32 {
+                u32::from(mask)
+            }
+            #[inline(always)]
+            unsafe fn expand_load(bits: u32, from: *const $t) -> Self {
+                // SAFETY: the caller promises one readable number.
+                unsafe { (*from).only(bits & 1 == 1) }
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
@@ -172,13 +181,30 @@ impl<T: Real, const N: usize> Lanes for Array<T, N> {
         unsafe { to.cast::<[T; N]>().write_unaligned(self.0) }
     }
     #[inline(always)]
-    unsafe fn compress_store(self, mask: [bool; N], to: *mut T) {
+    unsafe fn compress_store(self, bits: u32, to: *mut T) {
         let mut n = 0;
         for k in 0..N {
             // SAFETY: n <= k < N, and the caller promises N writable numbers.
             unsafe { *to.add(n) = self.0[k] };
-            n += mask[k] as usize;
+            n += (bits >> k & 1) as usize;
         }
+    }
+    #[inline(always)]
+    fn bits(mask: [bool; N]) -> u32 {
+        (0..N).fold(0, |bits, k| bits | u32::from(mask[k]) << k)
+    }
+    #[inline(always)]
+    unsafe fn expand_load(bits: u32, from: *const T) -> Self {
+        let mut out = [T::default(); N];
+        let mut n = 0;
+        for (k, lane) in out.iter_mut().enumerate() {
+            if bits >> k & 1 == 1 {
+                // SAFETY: n <= k < N, and the caller promises N readable numbers.
+                *lane = unsafe { *from.add(n) };
+                n += 1;
+            }
+        }
+        Array(out)
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

@@ -51,6 +51,47 @@ static COMPRESS_DOUBLE: [[u32; 8]; 16] = {
     table
 };
 
+/// For each mask of eight bits, which of the consecutive numbers belongs into each lane; an index of no lane where none
+/// does.
+static EXPAND: [[u32; 8]; 256] = {
+    let mut table = [[NOWHERE; 8]; 256];
+    let mut mask = 0;
+    while mask < 256 {
+        let (mut n, mut k) = (0, 0);
+        while k < 8 {
+            if mask >> k & 1 == 1 {
+                table[mask][k] = n;
+                n += 1;
+            }
+            k += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+/// The same for four doubles, each moved as two words.
+static EXPAND_DOUBLE: [[u32; 8]; 16] = {
+    let mut table = [[NOWHERE; 8]; 16];
+    let mut mask = 0;
+    while mask < 16 {
+        let (mut n, mut k) = (0, 0);
+        while k < 4 {
+            if mask >> k & 1 == 1 {
+                table[mask][2 * k] = 2 * n;
+                table[mask][2 * k + 1] = 2 * n + 1;
+                n += 1;
+            }
+            k += 1;
+        }
+        mask += 1;
+    }
+    table
+};
+
+/// Marks a lane that gets zero: its sign bit is set.
+const NOWHERE: u32 = 1 << 31;
+
 // SAFETY of every block in this file: these types are only used under `dispatch`, which checks the features.
 macro_rules! lanes {
     ($t:ident, $real:ty, $mask:ty, $n:literal,
@@ -120,9 +161,19 @@ macro_rules! lanes {
                 unsafe { $storeu(to, self.0) }
             }
             #[inline(always)]
-            unsafe fn compress_store(self, mask: $mask, to: *mut $real) {
+            unsafe fn compress_store(self, bits: u32, to: *mut $real) {
                 // SAFETY: the caller promises N writable numbers.
-                unsafe { $storeu(to, self.compress(mask)) }
+                unsafe { $storeu(to, self.compress(bits)) }
+            }
+            #[inline(always)]
+            fn bits(mask: $mask) -> u32 {
+                // SAFETY: see the head of the macro.
+                unsafe { $movemask(mask) as u32 }
+            }
+            #[inline(always)]
+            unsafe fn expand_load(bits: u32, from: *const $real) -> Self {
+                // SAFETY: the caller promises N readable numbers.
+                unsafe { Self::expand(bits, $loadu(from)) }
             }
             #[inline(always)]
             fn mul_add(self, a: Self, b: Self) -> Self {
@@ -240,11 +291,23 @@ impl F32x8 {
         }
     }
     #[inline(always)]
-    unsafe fn compress(self, mask: __m256) -> __m256 {
-        // SAFETY: the mask has 8 bits and the table 256 rows.
+    unsafe fn compress(self, bits: u32) -> __m256 {
+        // SAFETY: `bits` has 8 bits and the table 256 rows.
         unsafe {
-            let row = COMPRESS.as_ptr().add(_mm256_movemask_ps(mask) as usize);
+            let row = COMPRESS.as_ptr().add(bits as usize);
             _mm256_permutevar8x32_ps(self.0, _mm256_loadu_si256(row.cast()))
+        }
+    }
+    #[inline(always)]
+    unsafe fn expand(bits: u32, from: __m256) -> Self {
+        // SAFETY: `bits` has 8 bits and the table 256 rows.
+        unsafe {
+            let row = _mm256_loadu_si256(EXPAND.as_ptr().add(bits as usize).cast());
+            let nowhere = _mm256_castsi256_ps(_mm256_srai_epi32(row, 31));
+            F32x8(_mm256_andnot_ps(
+                nowhere,
+                _mm256_permutevar8x32_ps(from, row),
+            ))
         }
     }
     #[inline(always)]
@@ -268,17 +331,25 @@ impl F64x4 {
         unsafe { F64x4(_mm256_sub_pd(_mm256_loadu_pd(from), _mm256_set1_pd(origin))) }
     }
     #[inline(always)]
-    unsafe fn compress(self, mask: __m256d) -> __m256d {
-        // SAFETY: the mask has 4 bits and the table 16 rows.
+    unsafe fn compress(self, bits: u32) -> __m256d {
+        // SAFETY: `bits` has 4 bits and the table 16 rows.
         unsafe {
-            let row = COMPRESS_DOUBLE
-                .as_ptr()
-                .add(_mm256_movemask_pd(mask) as usize);
+            let row = COMPRESS_DOUBLE.as_ptr().add(bits as usize);
             let words = _mm256_permutevar8x32_epi32(
                 _mm256_castpd_si256(self.0),
                 _mm256_loadu_si256(row.cast()),
             );
             _mm256_castsi256_pd(words)
+        }
+    }
+    #[inline(always)]
+    unsafe fn expand(bits: u32, from: __m256d) -> Self {
+        // SAFETY: `bits` has 4 bits and the table 16 rows.
+        unsafe {
+            let row = _mm256_loadu_si256(EXPAND_DOUBLE.as_ptr().add(bits as usize).cast());
+            let words = _mm256_permutevar8x32_epi32(_mm256_castpd_si256(from), row);
+            let nowhere = _mm256_srai_epi32(row, 31);
+            F64x4(_mm256_castsi256_pd(_mm256_andnot_si256(nowhere, words)))
         }
     }
     #[inline(always)]

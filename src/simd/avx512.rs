@@ -105,10 +105,24 @@ impl Lanes for F32x16 {
         unsafe { _mm512_storeu_ps(to, self.0) }
     }
     #[inline(always)]
-    unsafe fn compress_store(self, mask: __mmask16, to: *mut f32) {
+    unsafe fn compress_store(self, bits: u32, to: *mut f32) {
         // Compressed in the register, then stored whole: the compressing store instruction is microcoded on some
         // machines. SAFETY: the caller promises 16 writable numbers.
-        unsafe { _mm512_storeu_ps(to, _mm512_maskz_compress_ps(mask, self.0)) }
+        unsafe { _mm512_storeu_ps(to, _mm512_maskz_compress_ps(bits as __mmask16, self.0)) }
+    }
+    #[inline(always)]
+    fn bits(mask: __mmask16) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    unsafe fn expand_load(bits: u32, from: *const f32) -> Self {
+        // SAFETY: the caller promises N readable numbers.
+        unsafe {
+            F32x16(_mm512_maskz_expand_ps(
+                bits as __mmask16,
+                _mm512_loadu_ps(from),
+            ))
+        }
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {
@@ -203,9 +217,23 @@ impl Lanes for F64x8 {
         unsafe { _mm512_storeu_pd(to, self.0) }
     }
     #[inline(always)]
-    unsafe fn compress_store(self, mask: __mmask8, to: *mut f64) {
+    unsafe fn compress_store(self, bits: u32, to: *mut f64) {
         // SAFETY: the caller promises 8 writable numbers.
-        unsafe { _mm512_storeu_pd(to, _mm512_maskz_compress_pd(mask, self.0)) }
+        unsafe { _mm512_storeu_pd(to, _mm512_maskz_compress_pd(bits as __mmask8, self.0)) }
+    }
+    #[inline(always)]
+    fn bits(mask: __mmask8) -> u32 {
+        u32::from(mask)
+    }
+    #[inline(always)]
+    unsafe fn expand_load(bits: u32, from: *const f64) -> Self {
+        // SAFETY: the caller promises N readable numbers.
+        unsafe {
+            F64x8(_mm512_maskz_expand_pd(
+                bits as __mmask8,
+                _mm512_loadu_pd(from),
+            ))
+        }
     }
     #[inline(always)]
     fn mul_add(self, a: Self, b: Self) -> Self {

@@ -85,6 +85,7 @@ pub fn force_level(level: Level) {
 }
 
 /// Does `task` with the widest lanes of this machine.
+#[cfg_attr(kolk_avx2_only, allow(clippy::needless_return))]
 #[inline]
 pub fn dispatch<R: Real, T: Task<R>>(task: T) -> T::Output {
     // A third of the code to compile, for whoever works on the engine (CONTRIBUTING.md).

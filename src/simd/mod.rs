@@ -87,11 +87,18 @@ pub trait Lanes:
     /// # Safety
     /// `to` must be writable for `N` numbers.
     unsafe fn store(self, to: *mut Self::Real);
-    /// Writes the lanes chosen by `mask` to consecutive places and leaves the rest, up to `N`, unspecified.
+    /// Writes the lanes chosen by `bits` to consecutive places and leaves the rest, up to `N`, unspecified.
     ///
     /// # Safety
     /// `to` must be writable for `N` numbers.
-    unsafe fn compress_store(self, mask: Self::Mask, to: *mut Self::Real);
+    unsafe fn compress_store(self, bits: u32, to: *mut Self::Real);
+    /// The mask as bits, that of the first lane lowest.
+    fn bits(mask: Self::Mask) -> u32;
+    /// The inverse of [`Lanes::compress_store`]: consecutive numbers in the lanes chosen by `bits`, zero elsewhere.
+    ///
+    /// # Safety
+    /// `from` must be readable for `N` numbers.
+    unsafe fn expand_load(bits: u32, from: *const Self::Real) -> Self;
     /// `self * a + b`, fused where the machine can.
     fn mul_add(self, a: Self, b: Self) -> Self;
     /// The smaller of each lane.

@@ -59,7 +59,7 @@ impl<R: Real> Task<R> for Operations<R> {
                     },
                     &mut out,
                 );
-                v.compress_store(mask, out.as_mut_ptr());
+                v.compress_store(L::bits(mask), out.as_mut_ptr());
                 let chosen: Vec<R> = x[..L::N]
                     .iter()
                     .copied()

@@ -11,18 +11,37 @@ use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
-use crate::particles::Column;
+use crate::particles::{Column, OptionalColumns};
 use crate::prescribed::RigidMotion;
 use crate::simd::Real;
-use crate::step::{DensityRate, Forces, GradientTerm, ShiftTerm};
-use crate::sweep::{Output, Pass, Source, Sweep, Sweeper, slot};
+use crate::step::{DensityRate, Forces, ShiftTerm, WallDensityRate};
+use crate::sweep::{Output, Pairs, Pass, Source, SumColumns, Sweep, Sweeper, slot};
 use crate::walls::{Extrapolation, Slip, WallMethod};
 
-/// Whether the configuration calls for the renormalised gradient of density.
-pub(super) fn needs_gradient(config: &Config) -> bool {
-    config
+/// Components of a symmetric matrix.
+const fn matrix<const D: usize>() -> usize {
+    D * (D + 1) / 2
+}
+
+/// The columns that the configuration calls for.
+pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColumns {
+    let gradient = config
         .density_diffusion
-        .is_some_and(|d| d.form == DiffusionForm::Antuono)
+        .is_some_and(|d| d.form == DiffusionForm::Antuono);
+    let surface = config.shifting.is_some_and(|s| s.free_surface);
+    OptionalColumns {
+        gradient,
+        shift: config.shifting.is_some(),
+        sums: match (gradient, surface) {
+            (_, true) => matrix::<D>() + D,
+            (true, false) => matrix::<D>(),
+            (false, false) => 0,
+        },
+    }
+}
+
+fn slices<R: Real>(columns: &mut [Column<R>]) -> impl Iterator<Item = &mut [R]> {
+    columns.iter_mut().map(|c| &mut c[..])
 }
 
 /// The equation of state asked for.
@@ -89,8 +108,7 @@ struct Stage<'a, R, const D: usize> {
     grid: &'a Grid<D>,
     sweeper: &'a Sweeper<R>,
     target: &'a Source<'a, R, D>,
-    fluid: Option<&'a Source<'a, R, D>>,
-    wall: Option<&'a Source<'a, R, D>>,
+    source: &'a Source<'a, R, D>,
 }
 
 impl<R: Real, const D: usize> Stage<'_, R, D> {
@@ -98,8 +116,7 @@ impl<R: Real, const D: usize> Stage<'_, R, D> {
         let sweep = Sweep {
             grid: self.grid,
             target: self.target,
-            fluid: self.fluid,
-            wall: self.wall,
+            source: self.source,
             pass,
         };
         self.sweeper.run(kernel, &sweep, out);
@@ -165,8 +182,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     grid: &self.grid,
                     sweeper: &self.sweeper,
                     target: &target,
-                    fluid: Some(&source),
-                    wall: None,
+                    source: &source,
                 };
                 stage.run(self.kernel, &pass, out);
             }
@@ -215,7 +231,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
     }
 
-    fn run_forces<V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D> + GradientTerm>(
+    fn run_forces<V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>>(
         &mut self,
         effects: V,
         friction: W,
@@ -253,21 +269,19 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 velocity,
             )
         });
-        let gradient = fluid
-            .gradient
-            .iter_mut()
-            .flatten()
-            .enumerate()
-            .map(|(a, c)| (3 + a, c));
-        let out = outputs(fluid.acceleration.iter_mut().enumerate().chain(gradient));
-        let stage = Stage {
+        let mut columns = SumColumns::default().vector(slices(&mut fluid.acceleration));
+        if let Some(gradient) = &mut fluid.gradient {
+            columns = columns
+                .gradient(slices(gradient))
+                .moment(slices(&mut fluid.sums).take(matrix::<D>()));
+        }
+        let pairs = Pairs {
             grid: &self.grid,
-            sweeper: &self.sweeper,
-            target: &source,
-            fluid: Some(&source),
+            fluid: &source,
             wall: wall.as_ref(),
+            pass: &pass,
         };
-        stage.run(self.kernel, &pass, out);
+        self.sweeper.run_pairs(self.kernel, &pairs, &columns);
     }
 
     /// The sweep of continuity, and of the shift over the step `dt`.
@@ -333,24 +347,21 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 .with(slot::CONDENSATION, &w.condensation)
                 .with_vector(slot::VELOCITY, &w.pair_velocity)
         });
-        let stage = Stage {
+        let mut columns = SumColumns::default().scalar(&mut fluid.density_rate);
+        if let Some(shift) = &mut fluid.shift {
+            columns = columns.gradient(slices(shift));
+        }
+        if fluid.sums.len() > matrix::<D>() {
+            let (moment, vector) = fluid.sums.split_at_mut(matrix::<D>());
+            columns = columns.moment(slices(moment)).vector(slices(vector));
+        }
+        let pairs = Pairs {
             grid: &self.grid,
-            sweeper: &self.sweeper,
-            target: &source,
-            fluid: Some(&source),
+            fluid: &source,
             wall: wall.as_ref(),
+            pass: &pass,
         };
-        let shifts = fluid
-            .shift
-            .iter_mut()
-            .flatten()
-            .enumerate()
-            .map(|(a, c)| (3 + a, c));
-        stage.run(
-            self.kernel,
-            &pass,
-            outputs(std::iter::once((0, &mut fluid.density_rate)).chain(shifts)),
-        );
+        self.sweeper.run_pairs(self.kernel, &pairs, &columns);
         // Walls that follow the equation of continuity: the same sum, over the fluid.
         if let Some(w) = &mut self.wall
             && let Some((_, rate)) = &mut w.density
@@ -359,17 +370,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 .with(slot::VOLUME, &w.volume)
                 .with(slot::CONDENSATION, &w.condensation)
                 .with_vector(slot::VELOCITY, &w.pair_velocity);
-            let pass = DensityRate {
-                diffusion: (),
-                shift: (),
-                reference_density,
-            };
+            let pass = WallDensityRate { reference_density };
             let stage = Stage {
                 grid: &self.grid,
                 sweeper: &self.sweeper,
                 target: &target,
-                fluid: Some(&source),
-                wall: None,
+                source: &source,
             };
             stage.run(self.kernel, &pass, outputs([(0, rate)]));
         }

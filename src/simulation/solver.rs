@@ -99,7 +99,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let n = fluid.mass.len() + wall.mass.len();
         let grid = Grid::new(low, high, support * (1.0 + SKIN), config.period(), n);
         let wall_config = config.wall.filter(|_| !wall.mass.is_empty());
-        let with_gradient = super::assembly::needs_gradient(&config);
         let mut set_of_walls = wall_config.map(|w| {
             Wall::new(
                 wall,
@@ -136,7 +135,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 fixed: config.time_step,
             },
             kernel: config.kernel,
-            fluid: Fluid::new(fluid, &grid, with_gradient, config.shifting.is_some()),
+            fluid: Fluid::new(
+                fluid,
+                &grid,
+                super::assembly::optional_columns::<D>(&config),
+            ),
             wall: set_of_walls,
             grid,
             bodies,

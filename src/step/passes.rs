@@ -1,8 +1,10 @@
 //! The two sweeps of a step.
 
 use crate::effects::{Contact, Continuity, DensityGradient, PairTerm, Pressure, Shift};
-use crate::simd::{Lanes, Real};
-use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
+use crate::simd::{Lanes, Real, dot};
+use crate::sweep::{
+    Other, Output, Own, Pair, PairPass, Pass, Splat, Sums, Tally, Uses, relative_velocity,
+};
 
 /// Acceleration by pressure and by the effects `V`, at walls by `W`; with `G`, the gradient of the condensation too.
 pub struct Forces<V, W, G> {
@@ -18,37 +20,28 @@ pub struct Forces<V, W, G> {
     pub specific_volume: f64,
 }
 
-/// Whether a gradient is among the sums of [`Forces`].
-pub trait GradientTerm {
-    /// Whether it is.
-    const PRESENT: bool;
-}
-impl GradientTerm for () {
-    const PRESENT: bool = false;
-}
-impl GradientTerm for DensityGradient {
-    const PRESENT: bool = true;
-}
-
-impl<
-    R: Real,
-    V: PairTerm<R, D>,
-    W: PairTerm<R, D>,
-    G: PairTerm<R, D> + GradientTerm,
-    const D: usize,
-> Pass<R, D> for Forces<V, W, G>
+impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: usize>
+    PairPass<R, D> for Forces<V, W, G>
 {
+    #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            vector: true,
+            ..self.gradient.uses()
+        }
+    }
+
     #[inline(always)]
     fn fluid<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        Pressure.add(pair, own, other, sums);
-        self.effects.add(pair, own, other, sums);
-        self.gradient.add(pair, own, other, sums);
+        Pressure.add(pair, own, other, tally);
+        self.effects.add(pair, own, other, tally);
+        self.gradient.add(pair, own, other, tally);
     }
 
     #[inline(always)]
@@ -57,72 +50,39 @@ impl<
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        Pressure.add(pair, own, other, sums);
-        self.contact.add(pair, own, other, sums);
-        self.friction.add(pair, own, other, sums);
+        Pressure.add(pair, own, other, tally);
+        self.contact.add(pair, own, other, tally);
+        self.friction.add(pair, own, other, tally);
     }
 
     #[inline(always)]
-    fn finish<L: Lanes<Real = R>>(
-        &self,
-        own: &Own<R, D>,
-        sums: &Sums<L, D>,
-        i: usize,
-        out: &mut Output<R>,
-    ) {
+    fn finish(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
         let density = R::from_f64(1.0) + own.values().condensation();
         let scale = R::from_f64(self.specific_volume) / density;
-        for a in 0..D {
-            out[a][i] = sums.vector[a].sum() * scale;
-        }
-        if G::PRESENT {
-            let gradient = DensityGradient::finish(sums);
-            for a in 0..D {
-                out[3 + a][i] = gradient[a];
-            }
+        sums.vector = sums.vector.map(|v| v * scale);
+        if self.gradient.uses().gradient {
+            sums.gradient = DensityGradient::finish(sums);
         }
     }
 }
 
 /// What the sweep of continuity may also sum up for: the shift of particles.
 pub trait ShiftTerm<R: Real, const D: usize>: PairTerm<R, D> {
-    /// Writes the shift of particle `i`, if there is one.
-    fn write<L: Lanes<Real = R>>(
-        &self,
-        own: &Own<R, D>,
-        sums: &Sums<L, D>,
-        i: usize,
-        out: &mut Output<R>,
-    );
+    /// Puts the shift of a particle, if there is one, in the place of the second vector.
+    fn write(&self, own: &Own<R, D>, sums: &mut Sums<R, D>);
 }
 
 impl<R: Real, const D: usize> ShiftTerm<R, D> for () {
     #[inline(always)]
-    fn write<L: Lanes<Real = R>>(
-        &self,
-        _: &Own<R, D>,
-        _: &Sums<L, D>,
-        _: usize,
-        _: &mut Output<R>,
-    ) {
-    }
+    fn write(&self, _: &Own<R, D>, _: &mut Sums<R, D>) {}
 }
 
 impl<R: Real, const D: usize> ShiftTerm<R, D> for Shift {
     #[inline(always)]
-    fn write<L: Lanes<Real = R>>(
-        &self,
-        own: &Own<R, D>,
-        sums: &Sums<L, D>,
-        i: usize,
-        out: &mut Output<R>,
-    ) {
-        let shift = self.finish(own, sums);
-        for a in 0..D {
-            out[3 + a][i] = shift[a];
-        }
+    fn write(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
+        sums.gradient = self.finish(own, sums);
     }
 }
 
@@ -137,20 +97,28 @@ pub struct DensityRate<T, S> {
     pub reference_density: f64,
 }
 
-impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> Pass<R, D>
+impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> PairPass<R, D>
     for DensityRate<T, S>
 {
+    #[inline(always)]
+    fn uses(&self) -> Uses {
+        Uses {
+            scalar: true,
+            ..self.shift.uses()
+        }
+    }
+
     #[inline(always)]
     fn fluid<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
-        sums: &mut Sums<L, D>,
+        tally: &mut Tally<L, D>,
     ) {
-        Continuity.add(pair, own, other, sums);
-        self.diffusion.add(pair, own, other, sums);
-        self.shift.add(pair, own, other, sums);
+        Continuity.add(pair, own, other, tally);
+        self.diffusion.add(pair, own, other, tally);
+        self.shift.add(pair, own, other, tally);
     }
 
     #[inline(always)]
@@ -159,10 +127,36 @@ impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> Pass<R, D>
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
+        tally: &mut Tally<L, D>,
+    ) {
+        Continuity.add(pair, own, other, tally);
+        self.shift.add(pair, own, other, tally);
+    }
+
+    #[inline(always)]
+    fn finish(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
+        sums.scalar = sums.scalar * R::from_f64(self.reference_density);
+        self.shift.write(own, sums);
+    }
+}
+
+/// Rate of density of wall particles that follow the equation of continuity, over the fluid.
+pub struct WallDensityRate {
+    /// `ρ0`.
+    pub reference_density: f64,
+}
+
+impl<R: Real, const D: usize> Pass<R, D> for WallDensityRate {
+    #[inline(always)]
+    fn add<L: Lanes<Real = R>>(
+        &self,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     ) {
-        Continuity.add(pair, own, other, sums);
-        self.shift.add(pair, own, other, sums);
+        let compression = dot(&relative_velocity(own, other), &pair.separation) * pair.slope;
+        sums.scalar = other.volume().mul_add(compression, sums.scalar);
     }
 
     #[inline(always)]
@@ -173,7 +167,7 @@ impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> Pass<R, D>
         i: usize,
         out: &mut Output<R>,
     ) {
-        out[0][i] = sums.scalar.sum() * R::from_f64(self.reference_density);
-        self.shift.write(own, sums, i, out);
+        let density = R::from_f64(1.0) + own.values().condensation();
+        out[0][i] = sums.scalar.sum() * density * R::from_f64(self.reference_density);
     }
 }

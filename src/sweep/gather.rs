@@ -1,27 +1,31 @@
 //! Candidates side by side: what lets the pair loop read whole vectors.
 
-use super::{SLOTS, Source};
-use crate::neighbours::Grid;
+use super::{Own, SLOTS, Source};
+use crate::neighbours::Run;
 use crate::particles::PAD;
 use crate::simd::{Lanes, Real};
-use std::mem::MaybeUninit;
+use std::ops::Range;
 
 /// A position out of everybody's reach, whose square is still finite in single precision.
 const FAR: f64 = 1e15;
 
-/// Vectors of candidates that are tested at a time, at most.
-const BLOCK: usize = 32;
+/// A vector of candidates of which some are within reach: where it starts, and which.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Hit {
+    pub(crate) at: u32,
+    pub(crate) bits: u32,
+}
 
 /// Distance of columns with room for `particles`: an odd number of vectors, so that columns do not meet in the same lines
 /// of the cache.
-fn stride_for(particles: usize) -> usize {
+pub(crate) fn stride_for(particles: usize) -> usize {
     ((particles / PAD + 4) | 1) * PAD
 }
 
 /// Numbers that start at a line of the cache: whole vectors are then read from one line.
 #[derive(Clone, Copy, Default)]
 #[repr(C, align(64))]
-struct Line<R>([R; PAD]);
+pub(crate) struct Line<R>([R; PAD]);
 
 /// Columns of candidates: positions relative to a frame, then the fields of the source.
 pub(crate) struct Buffer<R> {
@@ -109,17 +113,16 @@ impl<R: Real> Buffer<R> {
         }
     }
 
-    /// All particles of `source` in the cells around `cell`, relative to `frame`.
+    /// All particles of `source` in the cells of `runs`, relative to `frame`.
     #[inline(always)]
     pub(crate) fn gather<L: Lanes<Real = R>, const D: usize>(
         &mut self,
         source: &Source<R, D>,
-        grid: &Grid<D>,
-        cell: usize,
+        runs: &[Run<D>],
         frame: &[f64; D],
     ) {
         self.len = 0;
-        for run in grid.around(cell).iter() {
+        for run in runs {
             let range = source.cells.particles(run.first, run.end);
             if range.is_empty() {
                 continue;
@@ -152,54 +155,97 @@ impl<R: Real> Buffer<R> {
         self.close::<L, D>(source.fields());
     }
 
-    /// Those of `all` within `reach` of the box from `low` to `high`.
+    /// Position and fields of a particle.
+    #[inline(always)]
+    pub(crate) fn particle<const D: usize>(&self, k: usize) -> ([R; D], Own<R, D>) {
+        // SAFETY: callers name a particle of the buffer; columns without a field hold zeros or what is not looked at.
+        let at = |c: usize| unsafe { *self.column(c).add(k) };
+        let fields = std::array::from_fn(|slot| at(D + slot));
+        (std::array::from_fn(at), Own { fields })
+    }
+
+    /// The box around the particles `range`, of which there is at least one.
+    #[inline(always)]
+    pub(crate) fn bounds<const D: usize>(&self, range: Range<usize>) -> ([R; D], [R; D]) {
+        let mut low = [R::default(); D];
+        let mut high = low;
+        for a in 0..D {
+            let x = self.column(a).wrapping_add(range.start);
+            // SAFETY: callers name particles of the buffer.
+            unsafe {
+                (low[a], high[a]) = (*x, *x);
+                for k in 1..range.len() {
+                    low[a] = Lanes::min(*x.add(k), low[a]);
+                    high[a] = Lanes::max(*x.add(k), high[a]);
+                }
+            }
+        }
+        (low, high)
+    }
+
+    /// Puts the particles `range` out of everybody's reach.
+    #[inline(always)]
+    pub(crate) fn banish(&mut self, range: Range<usize>) {
+        for k in range {
+            // SAFETY: callers name particles of the buffer.
+            unsafe { *self.column_mut(0).add(k) = R::from_f64(FAR) };
+        }
+    }
+
+    /// Those of `all`, from the vector that holds place `from` on, within `reach` of the box from `low` to `high`.
+    /// Leaves in `hits` the vectors where they were, and gives their number.
     #[inline(always)]
     pub(crate) fn select<L: Lanes<Real = R>, const D: usize>(
         &mut self,
         all: &Buffer<R>,
+        from: usize,
         source: &Source<R, D>,
         low: &[R; D],
         high: &[R; D],
         reach: R,
-    ) {
+        hits: &mut Vec<Hit>,
+    ) -> usize {
         self.len = 0;
         self.reserve::<D>(all.len);
+        if hits.len() < all.len / L::N + 1 {
+            hits.resize(all.len + PAD, Hit::default());
+        }
         let reach2 = L::splat(reach * reach);
         let (low, high) = (low.map(L::splat), high.map(L::splat));
-        // In 3D, where every other vector is out of reach and no branch could predict which, those that hold anybody near
-        // are found first, then compacted. In 2D nearly all are near: one by one.
-        let width = if D == 2 { 1 } else { BLOCK } * L::N;
-        let mut near = [const { MaybeUninit::<(usize, L::Mask)>::uninit() }; BLOCK];
-        for block in (0..all.len).step_by(width) {
-            let mut hits = 0;
-            for k in (block..all.len.min(block + width)).step_by(L::N) {
-                let mut r2 = L::zero();
+        // Every other vector is out of reach and no branch could predict which: those that hold anybody near are found
+        // first, then compacted.
+        let mut found = 0;
+        for k in (from / L::N * L::N..all.len).step_by(L::N) {
+            let mut r2 = L::zero();
+            for a in 0..D {
+                // SAFETY: `k` is below the length of `all`, which is closed by a vector of particles out of reach.
+                let x = unsafe { L::load(all.column(a).add(k)) };
+                let d = (low[a] - x).max(x - high[a]).max(L::zero());
+                r2 = d.mul_add(d, r2);
+            }
+            let bits = L::bits(r2.less(reach2));
+            // SAFETY: `hits` has a place for every vector of `all`.
+            unsafe {
+                *hits.get_unchecked_mut(found) = Hit { at: k as u32, bits };
+            }
+            found += usize::from(bits != 0);
+        }
+        for hit in &hits[..found] {
+            let k = hit.at as usize;
+            // SAFETY: as above, and there is room for all particles here.
+            unsafe {
                 for a in 0..D {
-                    // SAFETY: `k` is below the length of `all`, which is closed by a vector of particles out of reach.
-                    let x = unsafe { L::load(all.column(a).add(k)) };
-                    let d = (low[a] - x).max(x - high[a]).max(L::zero());
-                    r2 = d.mul_add(d, r2);
+                    L::load(all.column(a).add(k))
+                        .compress_store(hit.bits, self.column_mut(a).add(self.len));
                 }
-                let mask = r2.less(reach2);
-                near[hits].write((k, mask));
-                hits += usize::from(L::count(mask) > 0);
-            }
-            for hit in &near[..hits] {
-                // SAFETY: the first `hits` are written; else as above, and there is room for all particles here.
-                unsafe {
-                    let (k, mask) = hit.assume_init();
-                    for a in 0..D {
-                        L::load(all.column(a).add(k))
-                            .compress_store(mask, self.column_mut(a).add(self.len));
-                    }
-                    for &(slot, _) in source.fields() {
-                        let v = L::load(all.column(D + slot).add(k));
-                        v.compress_store(mask, self.column_mut(D + slot).add(self.len));
-                    }
-                    self.len += L::count(mask);
+                for &(slot, _) in source.fields() {
+                    let v = L::load(all.column(D + slot).add(k));
+                    v.compress_store(hit.bits, self.column_mut(D + slot).add(self.len));
                 }
             }
+            self.len += hit.bits.count_ones() as usize;
         }
         self.close::<L, D>(source.fields());
+        found
     }
 }

@@ -1,7 +1,7 @@
 //! Distances and kernel values of a particle and vectors of neighbours.
 
 use super::gather::Buffer;
-use super::{Other, Own, Pair, Pass, Splat, Sums};
+use super::{Other, Pair};
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, dot};
 
@@ -13,6 +13,12 @@ pub(super) struct Geometry<L, const D: usize> {
     slope: L,
     tiny: L,
     kernel: KernelName,
+}
+
+/// What is done with each vector of pairs. `vector` must be `#[inline(always)]`.
+pub(super) trait Visit<L: Lanes, const D: usize> {
+    /// With the vector of neighbours that starts at place `k` of the buffer.
+    fn vector(&mut self, pair: &Pair<L, D>, other: &Other<L, D>, k: usize);
 }
 
 impl<L: Lanes, const D: usize> Geometry<L, D> {
@@ -29,45 +35,36 @@ impl<L: Lanes, const D: usize> Geometry<L, D> {
         }
     }
 
-    /// Adds to `sums` what `pass` makes of every vector of `others` around `x`, which are walls if `WALL`.
+    /// Shows `visit` every vector of `others` around `x`.
     #[inline(always)]
-    pub(super) fn add<P: Pass<L::Real, D>, const WALL: bool>(
-        &self,
-        pass: &P,
-        x: &[L; D],
-        own: &Own<L::Real, D>,
-        others: &Buffer<L::Real>,
-        sums: &mut Sums<L, D>,
-    ) {
+    pub(super) fn each<V: Visit<L, D>>(&self, x: &[L; D], others: &Buffer<L::Real>, visit: &mut V) {
         // One loop for the default kernel, and one for all others with a branch per vector: read as if the name could
         // change, for the compiler would otherwise make a copy of the loop per kernel, and of every sweep five.
         let step = L::N;
         match self.kernel {
             KernelName::WendlandC2 => {
                 for k in (0..others.len()).step_by(step) {
-                    self.vector::<P, WALL>(KernelName::WendlandC2, pass, x, own, others, k, sums);
+                    self.vector(KernelName::WendlandC2, x, others, k, visit);
                 }
             }
             _ => {
                 for k in (0..others.len()).step_by(step) {
                     // SAFETY: a reference is valid for reads.
                     let kernel = unsafe { std::ptr::read_volatile(&self.kernel) };
-                    self.vector::<P, WALL>(kernel, pass, x, own, others, k, sums);
+                    self.vector(kernel, x, others, k, visit);
                 }
             }
         }
     }
 
     #[inline(always)]
-    fn vector<P: Pass<L::Real, D>, const WALL: bool>(
+    fn vector<V: Visit<L, D>>(
         &self,
         kernel: KernelName,
-        pass: &P,
         x: &[L; D],
-        own: &Own<L::Real, D>,
         others: &Buffer<L::Real>,
         k: usize,
-        sums: &mut Sums<L, D>,
+        visit: &mut V,
     ) {
         let stride = others.stride();
         let other = Other::<L, D> {
@@ -90,10 +87,6 @@ impl<L: Lanes, const D: usize> Geometry<L, D> {
             normalisation: self.value,
             kernel,
         };
-        if WALL {
-            pass.wall(&pair, &Splat(own), &other, sums);
-        } else {
-            pass.fluid(&pair, &Splat(own), &other, sums);
-        }
+        visit.vector(&pair, &other, k);
     }
 }

@@ -1,29 +1,40 @@
 //! The pair sweep: the only hot loop.
 //!
-//! A pass sums something over the neighbours of every particle of a target set. Cell by cell, the candidates of the
-//! 3^D cells around are copied side by side, relative to a frame at the cell (positions are in double precision, their
-//! differences in the pair precision lose nothing). For each small cluster of the cell's particles those within reach
-//! of its bounding box are compacted, and each particle of the cluster then runs over them in whole vectors: no list
-//! is stored, nothing is gathered by index, and every particle's sum is its own, so that its bits do not depend on
-//! threads.
+//! Cell by cell, the candidates of the cells around are copied side by side, relative to a frame at the cell (positions
+//! are in double precision, their differences in the pair precision lose nothing). For each small cluster of the cell's
+//! particles those within reach of its bounding box are compacted, and each particle of the cluster then runs over them
+//! in whole vectors: no list is stored, nothing is gathered by index.
+//!
+//! A [`Pass`] sums something for every particle of a target set over another set. A [`PairPass`] sums over pairs of one
+//! set, each computed once for both of its particles, and over the walls around. Every sum has an order that depends on
+//! the grid alone, so that its bits do not depend on threads.
 
+mod colours;
 mod gather;
 mod geometry;
 mod moment;
 mod pair;
+mod pairs;
 mod single;
 mod slab;
+mod sums;
+mod workspace;
 
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
+pub use pairs::{PairPass, Pairs};
 pub use single::Single;
+pub use sums::{SumColumns, Sums, Tally, Uses};
 
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
-use crate::particles::Column;
+use crate::particles::{Column, for_ranges};
 use crate::simd::{Lanes, Real, dispatch};
-use slab::{Slab, Workspace};
+use colours::Blocks;
+use pairs::Block;
+use slab::Slab;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
+use workspace::Workspace;
 
 /// Fields that a source can carry (`slot`).
 pub const SLOTS: usize = 9;
@@ -36,51 +47,16 @@ const TASK: usize = 512;
 /// Most columns that a pass writes.
 pub const OUTPUTS: usize = 6;
 
-/// Running sums of a pass over the neighbours of one particle; those that a pass does not use cost nothing.
-pub struct Sums<L, const D: usize> {
-    /// A scalar.
-    pub scalar: L,
-    /// A vector.
-    pub vector: [L; D],
-    /// A second vector.
-    pub gradient: [L; D],
-    /// A symmetric matrix: xx, yy, xy, then zz, yz, xz.
-    pub moment: [L; 6],
-}
-
-impl<L: Lanes, const D: usize> Sums<L, D> {
-    #[inline(always)]
-    /// Nothing summed yet.
-    pub fn zero() -> Self {
-        Sums {
-            scalar: L::zero(),
-            vector: [L::zero(); D],
-            gradient: [L::zero(); D],
-            moment: [L::zero(); 6],
-        }
-    }
-}
-
-/// What is summed over neighbours, and what is made of the sums. Methods must be `#[inline(always)]`.
+/// What is summed over neighbours in another set, and what is made of the sums. Methods must be `#[inline(always)]`.
 pub trait Pass<R: Real, const D: usize>: Sync {
-    /// Adds a vector of fluid neighbours.
-    fn fluid<L: Lanes<Real = R>>(
+    /// Adds a vector of neighbours.
+    fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         own: &Splat<L, D>,
         other: &Other<L, D>,
         sums: &mut Sums<L, D>,
     );
-
-    /// Adds a vector of wall neighbours.
-    fn wall<L: Lanes<Real = R>>(
-        &self,
-        _pair: &Pair<L, D>,
-        _own: &Splat<L, D>,
-        _other: &Other<L, D>,
-        _sums: &mut Sums<L, D>,
-    ) {
-    }
 
     /// Makes the output of particle `i` of a task from its sums.
     fn finish<L: Lanes<Real = R>>(
@@ -153,18 +129,17 @@ pub struct Sweeper<R> {
     workspaces: Vec<Mutex<Workspace<R>>>,
     smoothing_length: f64,
     parts_per_cluster: usize,
+    per_cell: f64,
 }
 
-/// One pass over a target set.
+/// One pass from a set to another.
 pub struct Sweep<'a, R, P, const D: usize> {
     /// The grid of both sets.
     pub grid: &'a Grid<D>,
     /// For whom sums are made.
     pub target: &'a Source<'a, R, D>,
-    /// Its fluid neighbours.
-    pub fluid: Option<&'a Source<'a, R, D>>,
-    /// Its wall neighbours.
-    pub wall: Option<&'a Source<'a, R, D>>,
+    /// Their neighbours.
+    pub source: &'a Source<'a, R, D>,
     /// What is summed.
     pub pass: &'a P,
 }
@@ -184,6 +159,7 @@ impl<R: Real> Sweeper<R> {
                 .collect(),
             smoothing_length,
             parts_per_cluster,
+            per_cell,
         }
     }
 
@@ -195,6 +171,72 @@ impl<R: Real> Sweeper<R> {
                 .unwrap_or_else(PoisonError::into_inner)
                 .wipe();
         }
+    }
+
+    /// Runs a pass over pairs with `kernel`; what it leaves stands in `columns`, which belong to the set.
+    pub fn run_pairs<P: PairPass<R, D>, const D: usize>(
+        &self,
+        kernel: KernelName,
+        pairs: &Pairs<R, P, D>,
+        columns: &SumColumns<R>,
+    ) {
+        let n = pairs.fluid.position[0].len();
+        let used = pairs.pass.uses().columns::<D>();
+        let each = |work: &(dyn Fn(Range<usize>) + Sync)| for_ranges(n, || (), |(), ()| (), work);
+        for c in 0..used.len() {
+            assert!(!used[c] || !columns.0[c].is_null());
+        }
+        each(&|range| {
+            for c in 0..used.len() {
+                if used[c] {
+                    // SAFETY: the ranges of a pass are disjoint, and columns are as long as the set.
+                    unsafe { columns.of(c).range(&range) }.fill(R::default());
+                }
+            }
+        });
+        Blocks::new(pairs.grid, self.per_cell, n).for_each(|cells| {
+            let empty =
+                |row: Range<usize>| pairs.fluid.cells.particles(row.start, row.end).is_empty();
+            if (0..cells.rows()).all(|k| empty(cells.row(k))) {
+                return;
+            }
+            let mut workspace = self.workspace();
+            dispatch(Block {
+                pairs,
+                h: self.smoothing_length,
+                cells,
+                workspace: &mut *workspace,
+                columns,
+                kernel,
+                parts_per_cluster: self.parts_per_cluster,
+            });
+        });
+        each(&|range| {
+            for i in range {
+                let mut sums = Sums::zero();
+                for c in 0..used.len() {
+                    if used[c] {
+                        // SAFETY: as above.
+                        *sums.column_mut(c) = unsafe { *columns.0[c].add(i) };
+                    }
+                }
+                pairs.pass.finish(&pairs.fluid.own(i), &mut sums);
+                for c in 0..used.len() {
+                    if used[c] {
+                        // SAFETY: as above.
+                        unsafe { *columns.0[c].add(i) = *sums.column_mut(c) };
+                    }
+                }
+            }
+        });
+    }
+
+    /// The buffers of this thread.
+    fn workspace(&self) -> std::sync::MutexGuard<'_, Workspace<R>> {
+        let thread = rayon::current_thread_index().unwrap_or(0) % self.workspaces.len();
+        self.workspaces[thread]
+            .lock()
+            .unwrap_or_else(PoisonError::into_inner)
     }
 
     /// Runs a pass with `kernel`; `out` are columns of the target.
@@ -232,10 +274,7 @@ impl<R: Real> Sweeper<R> {
             return;
         }
         if tasks.len() == 1 {
-            let thread = rayon::current_thread_index().unwrap_or(0) % self.workspaces.len();
-            let mut workspace = self.workspaces[thread]
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner);
+            let mut workspace = self.workspace();
             dispatch(Slab {
                 sweep,
                 h: self.smoothing_length,

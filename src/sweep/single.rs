@@ -1,6 +1,6 @@
 //! One pair at a time, in double precision: for sums outside the sweep that must agree with it.
 
-use super::{Other, Own, Pair, SLOTS, Splat, Sums};
+use super::{Other, Own, Pair, SLOTS, Splat, Sums, Tally};
 use crate::effects::PairTerm;
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, dot};
@@ -58,8 +58,12 @@ impl<const D: usize> Single<D> {
             at: buffer.as_ptr(),
             stride: 1,
         };
-        let mut sums = Sums::zero();
-        term.add(&pair, &Splat(&Own { fields: *own }), &other, &mut sums);
+        let own = Own { fields: *own };
+        let own = Splat(&own);
+        let (mut sums, mut opposite) = (Sums::zero(), Sums::zero());
+        let mut tally = Tally::new(&mut sums, &mut opposite, own.volume(), other.volume());
+        term.add(&pair, &own, &other, &mut tally);
+        tally.close(term.uses(), &pair, 1.0, 1.0);
         sums.vector
     }
 }

@@ -1,48 +1,12 @@
-//! The work of one task: some consecutive cells.
+//! The work of one task of a pass from one set to another: some consecutive cells of the target.
 
-use super::gather::Buffer;
-use super::geometry::Geometry;
-use super::{Output, Pass, Sums, Sweep};
+use super::geometry::{Geometry, Visit};
+use super::workspace::Workspace;
+use super::{Other, Output, Own, Pair, Pass, Splat, Sums, Sweep};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
 use crate::simd::{Lanes, Real, Task};
 use std::ops::Range;
-
-/// Buffers of one thread.
-pub(super) struct Workspace<R> {
-    candidates: [Buffer<R>; 2],
-    selected: [Buffer<R>; 2],
-}
-
-impl<R: Real> Workspace<R> {
-    /// For cells of `per_cell` particles in order.
-    pub(super) fn new(per_cell: f64, dimension: usize) -> Self {
-        // The cells around a cell, and half as much again: disorder crowds some of them.
-        let room = (1.5 * per_cell.min(1000.0) * 3f64.powi(dimension as i32)) as usize;
-        let pair = || [Buffer::new(room, dimension), Buffer::new(room, dimension)];
-        Workspace {
-            candidates: pair(),
-            selected: pair(),
-        }
-    }
-
-    /// Forgets all numbers.
-    pub(super) fn wipe(&mut self) {
-        self.candidates
-            .iter_mut()
-            .chain(&mut self.selected)
-            .for_each(Buffer::wipe);
-    }
-
-    /// Bytes held.
-    pub(super) fn bytes(&self) -> usize {
-        self.candidates
-            .iter()
-            .chain(&self.selected)
-            .map(Buffer::bytes)
-            .sum()
-    }
-}
 
 /// Some consecutive cells: the work of one task.
 pub(super) struct Slab<'a, 'b, R, P, const D: usize> {
@@ -55,6 +19,20 @@ pub(super) struct Slab<'a, 'b, R, P, const D: usize> {
     pub(super) parts_per_cluster: usize,
 }
 
+/// Adds a vector of neighbours to a particle.
+struct One<'a, L: Lanes, P, const D: usize> {
+    pass: &'a P,
+    own: &'a Own<L::Real, D>,
+    sums: &'a mut Sums<L, D>,
+}
+
+impl<L: Lanes, P: Pass<L::Real, D>, const D: usize> Visit<L, D> for One<'_, L, P, D> {
+    #[inline(always)]
+    fn vector(&mut self, pair: &Pair<L, D>, other: &Other<L, D>, _: usize) {
+        self.pass.add(pair, &Splat(self.own), other, self.sums);
+    }
+}
+
 impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
     type Output = ();
 
@@ -63,8 +41,7 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
         let Sweep {
             grid,
             target,
-            fluid,
-            wall,
+            source,
             pass,
         } = self.sweep;
         let geometry = Geometry::<L, D>::new(self.kernel, self.h);
@@ -75,10 +52,11 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
             .particles(self.cells.start, self.cells.start)
             .start;
         let Workspace {
-            candidates,
-            selected,
+            candidates: [around, _],
+            selected: [near, _],
+            hits: [hits, _],
+            ..
         } = &mut *self.workspace;
-        let sources = [*fluid, *wall];
         for cell in self.cells.clone() {
             let mut frame: Option<[f64; D]> = None;
             for part in (0..Grid::<D>::PARTS).step_by(self.parts_per_cluster) {
@@ -87,25 +65,20 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
                 while first < particles.end {
                     let at =
                         |i: usize| -> [f64; D] { std::array::from_fn(|a| target.position[a][i]) };
-                    let near = |frame: &[f64; D], i: usize| {
+                    let beside = |frame: &[f64; D], i: usize| {
                         // Written so that a position that is not a number is near nothing.
                         (0..D).all(|a| (target.position[a][i] - frame[a]).abs() <= 2.0 * edge[a])
                     };
                     let origin = match frame {
-                        Some(origin) if near(&origin, first) => origin,
-                        _ => {
-                            let origin = at(first);
-                            for (buffer, source) in candidates.iter_mut().zip(sources) {
-                                if let Some(source) = source {
-                                    buffer.gather::<L, D>(source, grid, cell, &origin);
-                                }
-                            }
-                            frame = Some(origin);
-                            origin
-                        }
+                        Some(origin) if beside(&origin, first) => origin,
+                        _ => at(first),
                     };
+                    if frame != Some(origin) {
+                        around.gather::<L, D>(source, &grid.around(cell), &origin);
+                        frame = Some(origin);
+                    }
                     let mut end = first + 1;
-                    while end < particles.end && near(&origin, end) {
+                    while end < particles.end && beside(&origin, end) {
                         end += 1;
                     }
                     let relative = |i: usize| -> [R; D] {
@@ -120,21 +93,20 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
                             high[a] = Lanes::max(x[a], high[a]);
                         }
                     }
-                    for s in 0..2 {
-                        if let Some(source) = sources[s] {
-                            selected[s].select::<L, D>(&candidates[s], source, &low, &high, reach);
-                        }
-                    }
+                    near.select::<L, D>(around, 0, source, &low, &high, reach, hits);
                     for i in first..end {
                         let own = target.own(i);
                         let x = relative(i).map(L::splat);
                         let mut sums = Sums::zero();
-                        if fluid.is_some() {
-                            geometry.add::<P, false>(pass, &x, &own, &selected[0], &mut sums);
-                        }
-                        if wall.is_some() {
-                            geometry.add::<P, true>(pass, &x, &own, &selected[1], &mut sums);
-                        }
+                        geometry.each(
+                            &x,
+                            near,
+                            &mut One {
+                                pass: *pass,
+                                own: &own,
+                                sums: &mut sums,
+                            },
+                        );
                         pass.finish(&own, &sums, i - start, &mut self.out);
                     }
                     first = end;

@@ -27,7 +27,7 @@ pub struct Extrapolation<const D: usize> {
 
 impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
     #[inline(always)]
-    fn fluid<L: Lanes<Real = R>>(
+    fn add<L: Lanes<Real = R>>(
         &self,
         pair: &Pair<L, D>,
         _own: &Splat<L, D>,
