@@ -149,11 +149,11 @@ fn sort<const D: usize>(c: &mut Criterion, settled: &Settled) {
     group
         .warm_up_time(Duration::from_millis(300))
         .measurement_time(Duration::from_secs(2));
-    let mut double = Fluid::<f64, D>::new(&settled.given, &grid, false, false);
+    let mut double = Fluid::<f64, D>::new(&settled.given, &grid, Default::default());
     group.bench_function(BenchmarkId::new("f64", "sort"), |b| {
         b.iter(|| black_box(&mut double).sort(&grid, false))
     });
-    let mut mixed = Fluid::<f32, D>::new(&settled.given, &grid, false, false);
+    let mut mixed = Fluid::<f32, D>::new(&settled.given, &grid, Default::default());
     group.bench_function(BenchmarkId::new("mixed", "sort"), |b| {
         b.iter(|| black_box(&mut mixed).sort(&grid, false))
     });
