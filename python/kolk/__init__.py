@@ -48,6 +48,8 @@ if TYPE_CHECKING:
     from kolk.scene import Wall as Wall
     from kolk.scene.load import load as load
     from kolk.simulation import Simulation as Simulation
+    from kolk.study.estimate import Estimate as Estimate
+    from kolk.study.estimate import estimate as estimate
     from kolk.study.study import Study as Study
     from kolk.study.study import accuracy as accuracy
     from kolk.study.study import open_study as open_study
@@ -72,6 +74,7 @@ _HOMES = {
     "kolk.runner": ("run",),
     "kolk.scene": ("Fluid", "Probe", "Scene", "Wall", "load"),
     "kolk.simulation": ("Simulation",),
+    "kolk.study.estimate": ("Estimate", "estimate"),
     "kolk.study.study": ("Study", "accuracy", "open_study"),
 }
 _HOME = {name: module for module, names in _HOMES.items() for name in names}

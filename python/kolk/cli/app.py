@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from kolk.cli import accuracy, bench, cases, check, new, render, run
+from kolk.cli import accuracy, bench, cases, check, estimate, new, render, run
 
 app = typer.Typer(
     name="kolk",
@@ -41,6 +41,7 @@ for verb in (
     run.run,
     cases.cases,
     check.check,
+    estimate.estimate,
     accuracy.accuracy,
     bench.bench,
     new.new,

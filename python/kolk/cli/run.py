@@ -44,6 +44,24 @@ def run(
     force: Annotated[
         bool, typer.Option("--force", help="Start over in a folder that holds a run.")
     ] = False,
+    tolerance: Annotated[
+        str | None,
+        typer.Option(
+            "--tolerance",
+            metavar="SHARE",
+            help="Choose the spacing for an error, such as 2%; studies the scene where needed.",
+        ),
+    ] = None,
+    budget: Annotated[
+        str | None,
+        typer.Option(
+            "--budget", metavar="TIME", help="Choose the finest spacing for a time, such as 10min."
+        ),
+    ] = None,
+    quantity: Annotated[
+        str | None,
+        typer.Option("--quantity", metavar="NAME", help="What --tolerance speaks of: a probe."),
+    ] = None,
     pictures: Annotated[
         bool | None,
         typer.Option(
@@ -57,6 +75,21 @@ def run(
     from kolk.cli.closing import closing
 
     found = find_scene(scene, settings or [], spacing=spacing, until=until)
+    promise = None
+    if tolerance is not None or budget is not None:
+        from kolk.cli.promises import promised
+
+        promise = promised(
+            found,
+            tolerance,
+            budget,
+            quantity,
+            fixed=spacing is not None or resume,
+            precision=cast("Precision | None", precision),
+            threads=threads,
+            quiet=quiet,
+        )
+        found, precision = promise.scene, promise.precision
     if resume and out is None:
         out = run_folder(scene)
     finished = runner.run(
@@ -71,3 +104,7 @@ def run(
     )
     if not quiet:
         print(closing(finished))
+    if promise is not None:
+        from kolk.cli.promises import settled
+
+        settled(promise, finished)

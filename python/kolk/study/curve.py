@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .ladder import Variant
-from .law import PowerLaw, observed_order
+from .law import EXPECTED_SCATTER, PowerLaw, observed_order
 from .quantity import STATISTICS, Quantity, quantities
 from .record import Record
 from .verdict import Verdict, judge_law
@@ -26,6 +26,9 @@ ALL_PROBES = "all probes"
 
 REACH = 2.0
 """Finest spacing of a ladder over one that it may still speak of."""
+
+NEIGHBOUR = 1.5
+"""Spacing over another one up to which their errors are taken for alike where no law holds."""
 
 PROMISED = 0.95
 """Probability that an error stays within what is promised."""
@@ -81,19 +84,25 @@ class Curve:
             return max(part.bar_at(spacing) for part in self.parts)
         if self.law is None:
             return math.inf
-        if self.law.order <= 0.0:
-            # Errors that do not fall: no finer than the ladder, no better than its worst.
-            return math.inf
+        if self.verdict.kind in ("not falling", "not asymptotic"):
+            # Errors that the spacing does not set: as bad as the levels around.
+            near = self.spacing <= spacing * NEIGHBOUR
+            return float(np.max(self.error[near])) * math.exp(2.0 * EXPECTED_SCATTER)
         return self.law.upper(spacing, PROMISED)
+
+    @property
+    def finest(self) -> float:
+        """The finest spacing (m) that the ladder speaks of: beyond its end only with an order."""
+        trusted = self.verdict.sound or (self.verdict.kind == "too short" and self.spacing.size > 2)
+        return float(self.spacing[-1]) / (REACH if trusted else 1.0)
 
     def speaks_of(self, spacing: float) -> bool:
         """Whether a spacing (m) is in the ladder or a little finer than it."""
-        inside = self.spacing[-1] / REACH * (1 - 1e-9) <= spacing <= self.spacing[0] * (1 + 1e-9)
-        return bool(inside)
+        return self.finest * (1 - 1e-9) <= spacing <= float(self.spacing[0]) * (1 + 1e-9)
 
     def spacing_for(self, error: float) -> float:
         """Largest spacing (m) at which an error is promised; NaN where none can be."""
-        steps = np.geomspace(self.spacing[0], self.spacing[-1] / REACH, 200)
+        steps = np.geomspace(self.spacing[0], self.finest, 200)
         for spacing in steps:
             if self.promised(float(spacing)) <= error:
                 return float(spacing)

@@ -83,6 +83,16 @@ def snapped(scene: Scene, spacing: float) -> float:
     return across / max(2, round(across / spacing))
 
 
+def snapped_finer(scene: Scene, spacing: float) -> float:
+    """The spacing at or below one that divides the fluid; see `snapped`."""
+    near = snapped(scene, spacing)
+    if near <= spacing * (1 + 1e-9) or scene.fluid[0].shape is None:
+        return near
+    low, high = scene.fluid[0].shape.shape.bounds()
+    across = float(min(high - low))
+    return across / math.ceil(across / spacing)
+
+
 def fits(scene: Scene, spacing: float) -> bool:
     """Whether the scene can be filled so coarsely."""
     from kolk.scene.memory import estimated_particles

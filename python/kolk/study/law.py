@@ -69,8 +69,8 @@ class PowerLaw:
         return self.interval(spacing, 2.0 * confidence - 1.0)[1]
 
     def spacing_for(self, error: float) -> float:
-        """Spacing (m) at which the law passes through an error; infinite where it never falls."""
-        if self.order <= 0.0:
+        """Spacing (m) at which the law passes through a value; NaN for a law without slope."""
+        if self.order == 0.0:
             return math.nan
         return math.exp((math.log(error) - self.log_constant) / self.order)
 
@@ -78,9 +78,9 @@ class PowerLaw:
         """Largest spacing (m) whose `upper` is within an error; NaN where there is none."""
         from scipy.optimize import brentq
 
-        start = self.spacing_for(error)
-        if not math.isfinite(start):
+        if self.order <= 0.0:
             return math.nan
+        start = self.spacing_for(error)
 
         def excess(log_spacing: float) -> float:
             return math.log(self.upper(math.exp(log_spacing), confidence) / error)

@@ -2,14 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
 from .expansion import Expansion, expand
-from .record import Record, Track
+from .record import Track
 from .verdict import Verdict, judge_expansion
 
 Floats = NDArray[np.float64]
@@ -105,7 +106,16 @@ class Quantity:
         return int(np.argmax(np.abs(self.value[-1])))
 
 
-def quantities(records: Sequence[Record]) -> list[Quantity]:
+class Recorded(Protocol):
+    """As much of a `Record` as is needed here."""
+
+    @property
+    def spacing(self) -> float: ...
+    @property
+    def tracks(self) -> Mapping[str, Track]: ...
+
+
+def quantities(records: Sequence[Recorded]) -> list[Quantity]:
     """Every column of every probe that all records have, from coarse to fine.
 
     Columns that are zero to rounding on all levels (a sensor that stays dry) are left out.

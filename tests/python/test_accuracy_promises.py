@@ -1,0 +1,232 @@
+"""Estimates before a run, and runs chosen for a tolerance or a budget."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+import kolk
+from kolk.cli.promises import share, time
+from kolk.errors import SceneError
+from kolk.study import budget as budgeting
+from kolk.study import tolerance as tolerating
+from kolk.study.estimate import CostModel, Interval, coarse_scene, estimate
+from kolk.study.job import make_job
+from kolk.study.ladder import DEFAULT, Variant, snapped_finer
+from kolk.study.pilot import Pilot
+from kolk.study.promise import PromiseError, choose
+from kolk.study.store import Store
+from kolk.study.study import Study
+from tanks import tank
+from test_accuracy_study import made_up, rows, small
+
+
+def pilot(scene: kolk.Scene, spacing: float, limit: str = "acoustic") -> Pilot:
+    """A pilot of a machine that takes 1 µs for a particle-step, and 100 (or 5e3 h²) steps."""
+    counted = sum(len(b) for b in scene.replace(spacing=spacing).bodies())
+    power = {"acoustic": 1.0, "viscous": 2.0}[limit]
+    steps = 200.0 * (0.02 / spacing) ** power
+    each = 1e-6 * counted
+    t = np.linspace(0.0, 1.0, 50)
+    return Pilot(
+        spacing=spacing,
+        particles={"fluid": counted, "wall": 0, "total": counted},
+        threads=1,
+        until=scene.until,
+        frames=11,
+        set_up=1e-7 * counted,
+        begin=0.01,
+        frame=1e-8 * counted,
+        checkpoint=1e-8 * counted,
+        wall=1.0,
+        peak_memory=int(1e8 + 500 * counted),
+        engine_memory=200 * counted,
+        stations=[[scene.until * x, steps * x, steps * x * each, 0.0] for x in t],
+        limits=[limit] * len(t),
+    )
+
+
+@pytest.mark.parametrize("limit", ["acoustic", "viscous"])
+def test_costs_at_another_spacing_follow_the_limit_of_the_time_step(limit: str) -> None:
+    scene = tank()
+    model = CostModel(scene, pilot(scene, 0.02, limit), pilot(scene, 0.02, limit))
+    truth = pilot(scene, 0.01, limit)
+    found = model.at(0.01)
+    assert found.particles.value == truth.total and found.particles.low == found.particles.high
+    steps = truth.stations[-1][1] + 0.5 * truth.frames
+    assert found.steps.value == pytest.approx(steps, rel=1e-9)
+    assert found.steps.holds(steps)
+    assert found.wall.value == pytest.approx(truth.stations[-1][2], rel=0.15)
+    assert found.memory.value == pytest.approx(truth.peak_memory, rel=0.05)
+
+
+def test_a_pilot_that_did_not_reach_the_end_widens_the_interval() -> None:
+    scene = tank()
+    whole = pilot(scene, 0.02)
+    half = Pilot(**{**whole.__dict__, "stations": whole.stations[:25], "limits": whole.limits[:25]})
+    sure, unsure = CostModel(scene, whole, whole).at(0.02), CostModel(scene, half, half).at(0.02)
+    assert unsure.steps.value == pytest.approx(sure.steps.value, rel=0.02)
+    assert unsure.steps.high / unsure.steps.low > sure.steps.high / sure.steps.low
+
+
+def test_intervals() -> None:
+    found = Interval.around(10.0, 0.25)
+    assert (found.low, found.high) == (8.0, 12.5)
+    assert found.holds(12.0) and not found.holds(13.0)
+
+
+def test_an_estimate_holds(tmp_path: Path) -> None:
+    """Particles exactly, steps and memory within a tenth; seconds are not for a test to judge."""
+    scene = small().replace({"until": 0.3, "spacing": 0.02})
+    found = estimate(scene, threads=1, seconds=0.5)
+    truth = Store(tmp_path).measure(make_job(scene, None, 1))
+    assert found.particles.value == truth.particles["total"]
+    assert found.steps.value == pytest.approx(truth.steps, rel=0.1)
+    assert found.memory.value == pytest.approx(truth.costs.peak_memory, rel=0.1)
+    assert 0.0 < found.wall.low < found.wall.value < found.wall.high
+    assert sum(found.parts.values()) == pytest.approx(found.wall.value)
+    text = str(found)
+    assert "no study of this scene" in text and "threads" in text
+
+
+def test_the_coarse_pilot_is_still_a_flow() -> None:
+    scene = kolk.load("dam-break")
+    coarse = coarse_scene(scene)
+    assert coarse.spacing > 2.0 * scene.spacing
+    assert 0.3 / coarse.spacing >= 8.0 - 1e-9
+    least = scene.replace(spacing=0.3 / 8)
+    assert coarse_scene(least) is least
+
+
+def study_of_law(scene: kolk.Scene, spacings: list[float], **law: float) -> Study:
+    """A study whose errors are floor + constant h^order and whose runs take 1e-5 h^-3 seconds."""
+    records = []
+    for h in spacings:
+        error = law.get("floor", 0.0) + law.get("constant", 4.0) * h ** law.get("order", 1.5)
+        records.append(made_up(h, error, 1e-5 * h**-3, rows(h)))
+    return Study(
+        scene, (Variant(DEFAULT),), {DEFAULT: tuple(records)}, Path("studies/x"), Path("studies/r")
+    )
+
+
+@pytest.fixture
+def studied(monkeypatch: pytest.MonkeyPatch) -> dict[str, Any]:
+    """Studies are made up from the law that the test puts in here; `asked` are their spacings."""
+    law: dict[str, Any] = {"asked": []}
+
+    def made(scene: kolk.Scene, spacings: list[float], **_: Any) -> Study:
+        law["asked"].append(spacings)
+        return study_of_law(scene, spacings, **{k: v for k, v in law.items() if k != "asked"})
+
+    monkeypatch.setattr(tolerating, "accuracy", made)
+    monkeypatch.setattr(tolerating, "study_of", lambda scene: None)
+    return law
+
+
+def truth(law: dict[str, Any], spacing: float) -> float:
+    return float(
+        law.get("floor", 0.0) + law.get("constant", 4.0) * spacing ** law.get("order", 1.5)
+    )
+
+
+@pytest.mark.parametrize("tolerance", [0.05, 0.02, 0.01, 0.005])
+@pytest.mark.parametrize("order", [1.0, 1.5, 2.0])
+def test_a_tolerance_is_met_at_the_least_cost(
+    studied: dict[str, Any], tolerance: float, order: float
+) -> None:
+    studied |= {"order": order, "constant": {1.0: 0.8, 1.5: 4.0, 2.0: 40.0}[order]}
+    found = choose(tank(), tolerance=tolerance, quiet=True)
+    wrong = truth(studied, found.scene.spacing)
+    assert wrong <= tolerance
+    assert found.error is not None and wrong <= found.error <= tolerance * 1.0001
+    coarsest = max(studied["asked"][0])
+    assert found.scene.spacing >= coarsest * 0.99 or wrong > 0.25 * tolerance, "needlessly fine"
+    assert "Why" in str(found)
+
+
+def test_a_tolerance_below_the_floor_is_refused_with_the_nearest(studied: dict[str, Any]) -> None:
+    studied |= {"floor": 0.03, "constant": 4.0}
+    with pytest.raises(PromiseError, match=r"1 % cannot be promised.*What can be promised is"):
+        choose(tank(), tolerance=0.01, quiet=True)
+
+
+def test_an_error_that_does_not_fall_is_refused(studied: dict[str, Any]) -> None:
+    studied |= {"floor": 0.05, "constant": -1.0, "order": 1.0}
+    with pytest.raises(PromiseError, match="does not fall"):
+        choose(tank(), tolerance=0.01, quiet=True)
+
+
+def test_a_tolerance_that_the_budget_does_not_hold_is_refused(studied: dict[str, Any]) -> None:
+    studied |= {"constant": 8.0}
+    with pytest.raises(PromiseError, match="cannot be promised"):
+        choose(tank(), tolerance=0.0005, budget=60.0, quiet=True)
+
+
+def test_nonsense_is_refused() -> None:
+    with pytest.raises(PromiseError, match="tolerance"):
+        choose(tank(), tolerance=3.0)
+    with pytest.raises(PromiseError, match="budget"):
+        choose(tank(), budget=0.0)
+    assert (share("2%"), share("0.02"), share(" 1.5 % ")) == (0.02, 0.02, 0.015)
+    assert (time("10min"), time("90"), time("1.5 h")) == (600.0, 90.0, 5400.0)
+    for wrong in ("2 percent", "", "1.2.3%"):
+        with pytest.raises(SceneError, match="--tolerance"):
+            share(wrong)
+    with pytest.raises(SceneError, match="--budget"):
+        time("ten")
+
+
+@pytest.mark.parametrize("seconds", [20.0, 60.0, 600.0])
+def test_a_budget_is_used_and_kept(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
+    def calibrated(scene: kolk.Scene, **_: Any) -> CostModel:
+        found = pilot(scene, scene.spacing)
+        return CostModel(scene, found, found)
+
+    monkeypatch.setattr(budgeting, "calibrate", calibrated)
+    monkeypatch.setattr(budgeting, "study_of", lambda scene: None)
+    scene = tank()
+    found = choose(scene, budget=seconds, quiet=True)
+    wall = CostModel(scene, *[pilot(scene, found.scene.spacing)] * 2).at(found.scene.spacing).wall
+    assert 0.8 * seconds <= wall.value <= seconds
+
+
+def test_too_small_a_budget_is_refused_with_what_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
+    def calibrated(scene: kolk.Scene, **_: Any) -> CostModel:
+        found = pilot(scene, scene.spacing)
+        return CostModel(scene, found, found)
+
+    monkeypatch.setattr(budgeting, "calibrate", calibrated)
+    monkeypatch.setattr(budgeting, "study_of", lambda scene: None)
+    with pytest.raises(PromiseError, match="give it"):
+        choose(tank(), budget=0.001, quiet=True)
+
+
+def test_a_finer_snap_is_never_coarser() -> None:
+    scene = kolk.load("taylor-green")
+    for spacing in (0.03, 0.0201, 0.0123):
+        found = snapped_finer(scene, spacing)
+        assert found <= spacing * (1 + 1e-9)
+        assert 1.0 / found == pytest.approx(math.ceil(1.0 / spacing - 1e-9))
+
+
+def test_the_command_line_promises_and_settles(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    from kolk.cli.app import app
+
+    monkeypatch.chdir(tmp_path)
+    small().replace({"until": 0.02}).save(tmp_path / "small.toml")
+    words = ["run", "small.toml", "--tolerance", "60%", "--quantity", "tip", "--no-pictures"]
+    found = CliRunner().invoke(app, [*words, "--threads", "1"])
+    assert found.exit_code == 0, found.output
+    assert "The promise:" in found.output and "Promised: tip within 60 %" in found.output
+    assert (tmp_path / "runs" / "tank" / "promise.json").is_file()
+    refused = CliRunner().invoke(
+        app, ["run", "small.toml", "--tolerance", "2%", "--spacing", "0.1"]
+    )
+    assert refused.exit_code == 2
