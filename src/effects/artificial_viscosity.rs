@@ -10,20 +10,20 @@ use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 /// energy; conserves linear and angular momentum.
 #[derive(Clone, Copy, Debug)]
 pub struct ArtificialViscosity {
-    alpha_c: f64,
-    beta: f64,
+    /// `2 ρ0 α c0 h`.
+    linear: f64,
+    /// `2 ρ0 β h²`.
+    quadratic: f64,
     h: f64,
-    reference_density: f64,
 }
 
 impl ArtificialViscosity {
     /// With coefficients `alpha` and `beta`, for sound speed `c0` in m/s and smoothing length `h` in m.
     pub fn new(alpha: f64, beta: f64, c0: f64, h: f64, reference_density: f64) -> Self {
         ArtificialViscosity {
-            alpha_c: alpha * c0,
-            beta,
+            linear: 2.0 * reference_density * alpha * c0 * h,
+            quadratic: 2.0 * reference_density * beta * h * h,
             h,
-            reference_density,
         }
     }
 }
@@ -50,14 +50,13 @@ impl<R: Real, const D: usize> PairTerm<R, D> for ArtificialViscosity {
         let (own_density, other_density) = (one + own.condensation(), one + other.condensation());
         // One division serves the regularised distance and the mean density; densities are in units of ρ0.
         let regularised = pair.squared + L::constant(0.01 * self.h * self.h);
-        let inverse = (regularised * (own_density + other_density)).recip();
-        let mu = L::constant(self.h) * approach * inverse * (own_density + other_density);
-        let viscous = mu * (L::constant(self.alpha_c) - L::constant(self.beta) * mu);
-        let density = L::constant(2.0 * self.reference_density)
-            * own_density
-            * other_density
-            * regularised
-            * inverse;
-        tally.push(density * viscous * pair.slope);
+        let densities = own_density + other_density;
+        let inverse = (regularised * densities).recip();
+        let approach = approach * inverse;
+        let mut viscous = L::constant(self.linear) * approach;
+        if self.quadratic != 0.0 {
+            viscous = viscous - L::constant(self.quadratic) * approach.squared() * densities;
+        }
+        tally.push(own_density * other_density * (viscous * pair.slope));
     }
 }

@@ -51,6 +51,8 @@ macro_rules! scalar {
                 unsafe { *to = self }
             }
             #[inline(always)]
+            unsafe fn add_first(self, _n: usize, _to: *mut $t) {}
+            #[inline(always)]
             fn bits(mask: bool) -> u32 {
                 u32::from(mask)
             }
@@ -94,14 +96,6 @@ macro_rules! scalar {
             #[inline(always)]
             fn sum(self) -> $t {
                 self
-            }
-            #[inline(always)]
-            fn count(mask: bool) -> usize {
-                mask as usize
-            }
-            #[inline(always)]
-            fn both(a: bool, b: bool) -> bool {
-                a && b
             }
         }
     };
@@ -190,6 +184,13 @@ impl<T: Real, const N: usize> Lanes for Array<T, N> {
         }
     }
     #[inline(always)]
+    unsafe fn add_first(self, n: usize, to: *mut T) {
+        for k in 0..n {
+            // SAFETY: the caller promises `n` writable numbers.
+            unsafe { *to.add(k) += self.0[k] };
+        }
+    }
+    #[inline(always)]
     fn bits(mask: [bool; N]) -> u32 {
         (0..N).fold(0, |bits, k| bits | u32::from(mask[k]) << k)
     }
@@ -247,13 +248,5 @@ impl<T: Real, const N: usize> Lanes for Array<T, N> {
             s += self.0[k];
         }
         s
-    }
-    #[inline(always)]
-    fn count(mask: [bool; N]) -> usize {
-        mask.iter().map(|&m| m as usize).sum()
-    }
-    #[inline(always)]
-    fn both(a: [bool; N], b: [bool; N]) -> [bool; N] {
-        std::array::from_fn(|k| a[k] && b[k])
     }
 }

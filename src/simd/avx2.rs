@@ -166,6 +166,11 @@ macro_rules! lanes {
                 unsafe { $storeu(to, self.compress(bits)) }
             }
             #[inline(always)]
+            unsafe fn add_first(self, n: usize, to: *mut $real) {
+                // SAFETY: the caller promises `n` writable numbers; masked lanes are not touched.
+                unsafe { self.add_to_first(n, to) }
+            }
+            #[inline(always)]
             fn bits(mask: $mask) -> u32 {
                 // SAFETY: see the head of the macro.
                 unsafe { $movemask(mask) as u32 }
@@ -219,16 +224,6 @@ macro_rules! lanes {
             fn sum(self) -> $real {
                 // SAFETY: see the head of the macro.
                 unsafe { self.total() }
-            }
-            #[inline(always)]
-            fn count(mask: $mask) -> usize {
-                // SAFETY: see the head of the macro.
-                unsafe { $movemask(mask).count_ones() as usize }
-            }
-            #[inline(always)]
-            fn both(a: $mask, b: $mask) -> $mask {
-                // SAFETY: see the head of the macro.
-                unsafe { $and(a, b) }
             }
         }
     };
@@ -299,6 +294,19 @@ impl F32x8 {
         }
     }
     #[inline(always)]
+    unsafe fn add_to_first(self, n: usize, to: *mut f32) {
+        // SAFETY: the caller promises `n` writable numbers; masked lanes are not touched.
+        unsafe {
+            let lane = _mm256_setr_epi32(0, 1, 2, 3, 4, 5, 6, 7);
+            let mask = _mm256_cmpgt_epi32(_mm256_set1_epi32(n as i32), lane);
+            _mm256_maskstore_ps(
+                to,
+                mask,
+                _mm256_add_ps(_mm256_maskload_ps(to, mask), self.0),
+            );
+        }
+    }
+    #[inline(always)]
     unsafe fn expand(bits: u32, from: __m256) -> Self {
         // SAFETY: `bits` has 8 bits and the table 256 rows.
         unsafe {
@@ -340,6 +348,19 @@ impl F64x4 {
                 _mm256_loadu_si256(row.cast()),
             );
             _mm256_castsi256_pd(words)
+        }
+    }
+    #[inline(always)]
+    unsafe fn add_to_first(self, n: usize, to: *mut f64) {
+        // SAFETY: the caller promises `n` writable numbers; masked lanes are not touched.
+        unsafe {
+            let lane = _mm256_setr_epi64x(0, 1, 2, 3);
+            let mask = _mm256_cmpgt_epi64(_mm256_set1_epi64x(n as i64), lane);
+            _mm256_maskstore_pd(
+                to,
+                mask,
+                _mm256_add_pd(_mm256_maskload_pd(to, mask), self.0),
+            );
         }
     }
     #[inline(always)]

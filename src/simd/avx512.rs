@@ -111,6 +111,15 @@ impl Lanes for F32x16 {
         unsafe { _mm512_storeu_ps(to, _mm512_maskz_compress_ps(bits as __mmask16, self.0)) }
     }
     #[inline(always)]
+    unsafe fn add_first(self, n: usize, to: *mut f32) {
+        // SAFETY: the caller promises `n` writable numbers; masked lanes are not touched.
+        unsafe {
+            let mask = ((1u32 << n) - 1) as __mmask16;
+            let sum = _mm512_add_ps(_mm512_maskz_loadu_ps(mask, to), self.0);
+            _mm512_mask_storeu_ps(to, mask, sum);
+        }
+    }
+    #[inline(always)]
     fn bits(mask: __mmask16) -> u32 {
         u32::from(mask)
     }
@@ -182,14 +191,6 @@ impl Lanes for F32x16 {
         // SAFETY: see the head of this file.
         unsafe { _mm512_reduce_add_ps(self.0) }
     }
-    #[inline(always)]
-    fn count(mask: __mmask16) -> usize {
-        mask.count_ones() as usize
-    }
-    #[inline(always)]
-    fn both(a: __mmask16, b: __mmask16) -> __mmask16 {
-        a & b
-    }
 }
 
 impl Lanes for F64x8 {
@@ -220,6 +221,15 @@ impl Lanes for F64x8 {
     unsafe fn compress_store(self, bits: u32, to: *mut f64) {
         // SAFETY: the caller promises 8 writable numbers.
         unsafe { _mm512_storeu_pd(to, _mm512_maskz_compress_pd(bits as __mmask8, self.0)) }
+    }
+    #[inline(always)]
+    unsafe fn add_first(self, n: usize, to: *mut f64) {
+        // SAFETY: the caller promises `n` writable numbers; masked lanes are not touched.
+        unsafe {
+            let mask = ((1u32 << n) - 1) as __mmask8;
+            let sum = _mm512_add_pd(_mm512_maskz_loadu_pd(mask, to), self.0);
+            _mm512_mask_storeu_pd(to, mask, sum);
+        }
     }
     #[inline(always)]
     fn bits(mask: __mmask8) -> u32 {
@@ -298,13 +308,5 @@ impl Lanes for F64x8 {
     fn sum(self) -> f64 {
         // SAFETY: see the head of this file.
         unsafe { _mm512_reduce_add_pd(self.0) }
-    }
-    #[inline(always)]
-    fn count(mask: __mmask8) -> usize {
-        mask.count_ones() as usize
-    }
-    #[inline(always)]
-    fn both(a: __mmask8, b: __mmask8) -> __mmask8 {
-        a & b
     }
 }

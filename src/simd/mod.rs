@@ -92,6 +92,11 @@ pub trait Lanes:
     /// # Safety
     /// `to` must be writable for `N` numbers.
     unsafe fn compress_store(self, bits: u32, to: *mut Self::Real);
+    /// Adds the first `n` lanes to the `n` numbers at `to`, and touches no others.
+    ///
+    /// # Safety
+    /// `n` must be below `N`, and `to` writable for `n` numbers.
+    unsafe fn add_first(self, n: usize, to: *mut Self::Real);
     /// The mask as bits, that of the first lane lowest.
     fn bits(mask: Self::Mask) -> u32;
     /// The inverse of [`Lanes::compress_store`]: consecutive numbers in the lanes chosen by `bits`, zero elsewhere.
@@ -117,10 +122,6 @@ pub trait Lanes:
     fn select(self, mask: Self::Mask, other: Self) -> Self;
     /// Sum of all lanes, always in the same order.
     fn sum(self) -> Self::Real;
-    /// Number of true lanes.
-    fn count(mask: Self::Mask) -> usize;
-    /// True in both.
-    fn both(a: Self::Mask, b: Self::Mask) -> Self::Mask;
 
     /// All lanes zero.
     #[inline(always)]

@@ -65,8 +65,25 @@ impl<R: Real> Task<R> for Operations<R> {
                     .copied()
                     .filter(|&a| a < R::from_f64(0.5))
                     .collect();
-                assert_eq!(L::count(mask), chosen.len());
+                assert_eq!(L::bits(mask).count_ones() as usize, chosen.len());
                 assert_eq!(&out[..chosen.len()], &chosen[..]);
+                let mut spread = vec![one; L::N];
+                L::expand_load(L::bits(mask), out.as_ptr()).store(spread.as_mut_ptr());
+                for l in 0..L::N {
+                    let kept = if x[l] < R::from_f64(0.5) {
+                        x[l]
+                    } else {
+                        R::default()
+                    };
+                    assert_eq!(spread[l], kept);
+                }
+                for n in 0..L::N {
+                    let mut sums = vec![one; L::N];
+                    v.add_first(n, sums.as_mut_ptr());
+                    for l in 0..L::N {
+                        assert_eq!(sums[l], if l < n { one + x[l] } else { one });
+                    }
+                }
                 let total: R = x[..L::N].iter().copied().sum();
                 let d = (v.sum() - total).to_f64().abs();
                 assert!(d <= 16.0 * eps.to_f64() * total.to_f64());

@@ -58,6 +58,12 @@ pub trait Pass<R: Real, const D: usize>: Sync {
         sums: &mut Sums<L, D>,
     );
 
+    /// Whether particle `i` of a task, which has no neighbours, has its output from before.
+    #[inline(always)]
+    fn is_settled(&self, _i: usize, _out: &Output<R>) -> bool {
+        false
+    }
+
     /// Makes the output of particle `i` of a task from its sums.
     fn finish<L: Lanes<Real = R>>(
         &self,

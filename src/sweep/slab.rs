@@ -81,6 +81,12 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
                     while end < particles.end && beside(&origin, end) {
                         end += 1;
                     }
+                    if around.len() == 0
+                        && (first..end).all(|i| pass.is_settled(i - start, &self.out))
+                    {
+                        first = end;
+                        continue;
+                    }
                     let relative = |i: usize| -> [R; D] {
                         std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
                     };

@@ -189,9 +189,7 @@ impl<R: Real> Reactions<R> {
                 for k in (0..whole).step_by(L::N) {
                     (L::load(to.add(k)) + L::load(from.add(k))).store(to.add(k));
                 }
-                for k in whole..range.len() {
-                    *to.add(k) += *from.add(k);
-                }
+                L::load(from.add(whole)).add_first(range.len() - whole, to.add(whole));
             }
         }
     }

@@ -49,6 +49,13 @@ impl<R: Real, const D: usize> Pass<R, D> for Extrapolation<D> {
         }
     }
 
+    /// Most of a tank's walls are dry, and stay so. Nobody is near who could see another velocity than theirs.
+    #[inline(always)]
+    fn is_settled(&self, i: usize, out: &Output<R>) -> bool {
+        let zero = R::default();
+        out[0][i] == zero && out[2][i] > zero
+    }
+
     #[inline(always)]
     fn finish<L: Lanes<Real = R>>(
         &self,
