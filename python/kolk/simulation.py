@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from types import MappingProxyType
@@ -13,7 +14,8 @@ from numpy.typing import ArrayLike, NDArray
 from kolk.errors import KolkError
 
 if TYPE_CHECKING:
-    from kolk.scene import Scene
+    from kolk import _core
+    from kolk.scene import Body, Scene
 
 Floats = NDArray[np.float64]
 Precision = Literal["f64", "mixed"]
@@ -107,6 +109,16 @@ class BodyView:
         return self._kept[name].copy()
 
 
+def make_engine(
+    config: Mapping[str, Any], bodies: Sequence[Body], precision: Precision, threads: int
+) -> _core.Simulation:
+    """The engine for a configuration (`kolk.scene.engine`) and its bodies."""
+    from kolk import _core
+
+    arrays = [(b.name, b.kind, b.position, b.velocity, b.density, b.mass) for b in bodies]
+    return _core.Simulation(json.dumps(config), arrays, precision, threads)
+
+
 class Bodies(Mapping[str, BodyView]):
     """The bodies of a simulation by name, in the scene's order."""
 
@@ -146,24 +158,19 @@ class Simulation:
     def __init__(
         self, scene: Scene, *, precision: Precision = DEFAULT_PRECISION, threads: int = 0
     ) -> None:
+        from kolk.scene.engine import engine_config
+
         if precision not in PRECISIONS:
             raise KolkError(f'precision: {precision!r} is not known; choose "f64" or "mixed"')
         if isinstance(threads, bool) or not isinstance(threads, int) or threads < 0:
             raise KolkError(
                 f"threads: {threads!r} is not a number of threads; give 1 or more, or 0 for all"
             )
-        from kolk import _core
-
         bodies = scene.bodies()
         self.scene = scene
         self.initial = MappingProxyType({body.name: body for body in bodies})
         """The bodies as the scene filled them, by name."""
-        self._engine = _core.Simulation(
-            scene.engine_config(),
-            [(b.name, b.kind, b.position, b.velocity, b.density, b.mass) for b in bodies],
-            precision,
-            threads,
-        )
+        self._engine = make_engine(engine_config(scene), bodies, precision, threads)
         self.bodies = Bodies([BodyView(self, body.name, body.kind) for body in bodies])
 
     @property
@@ -268,8 +275,15 @@ class Simulation:
 
     @property
     def effects(self) -> list[dict[str, Any]]:
-        """Every effect: name, on, columns, bytes_per_particle, dt_limit."""
-        return [dict(effect) for effect in self._engine.effects()]
+        """Every effect that kolk knows, on or off, as dicts.
+
+        name, what it does, on, why (the key that asks for it, what calls for it, or why it is left
+        out), where it stands in the step, columns and bytes_per_particle that only it needs,
+        dt_limit. `kolk.explain` adds what each costs.
+        """
+        from kolk.explain.catalogue import described
+
+        return [described(self.scene, effect) for effect in self._engine.effects()]
 
     @property
     def memory(self) -> dict[str, int]:

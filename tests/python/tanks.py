@@ -1,4 +1,4 @@
-"""A scene that many tests change a little."""
+"""Scenes that many tests change a little."""
 
 from __future__ import annotations
 
@@ -20,6 +20,26 @@ def tank(**changes: object) -> Scene:
             {
                 "name": "tank",
                 "shape": {"tank": {"from": [0.0, 0.0], "to": [1.0, 0.6], "open": ["top"]}},
+            }
+        ],
+    }
+    return Scene(**(data | changes))
+
+
+def vortex(**changes: object) -> Scene:
+    """A periodic box without gravity."""
+    data: dict[str, object] = {
+        "name": "vortex",
+        "dimension": 2,
+        "spacing": 0.05,
+        "until": 1.0,
+        "periodic": {"x": [0.0, 1.0], "y": [0.0, 1.0]},
+        "fluid": [
+            {
+                "name": "fluid",
+                "shape": {"box": {"from": [0.0, 0.0], "to": [1.0, 1.0]}},
+                "velocity": ["sin(2*pi*y)", 0.0],
+                "viscosity": {"laminar": 0.01},
             }
         ],
     }

@@ -207,7 +207,7 @@ BAD: dict[str, tuple[str, str]] = {
     ),
     "diffusion": (
         edited('density_diffusion = "antuono"', 'density_diffusion = "antuono2"'),
-        'numerics.density_diffusion: found "antuono2", must be "antuono"',
+        'numerics.density_diffusion: found "antuono2", must be "auto"',
     ),
     "list of the wrong length": (
         edited("at = [1.61, 0.015]", "at = [1.61]"),

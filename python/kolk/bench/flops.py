@@ -2,8 +2,9 @@
 
 Additions, multiplications, divisions and square roots count one each, a multiply-add two.
 Comparisons, choices, loads, and what does not depend on the neighbour count nothing; what two
-effects share is counted once. A step visits every directed pair twice: in the sweep of forces and
-in the sweep of continuity.
+effects share is counted once. Either sweep of a step visits every pair once, for both of its
+particles: a directed pair, a neighbour of a particle, costs half of that. Selecting those within
+reach is not counted, nor is what a wall particle adds on its one side beyond that half.
 """
 
 from __future__ import annotations
@@ -23,36 +24,47 @@ def approach(dimension: int) -> int:
     return 3 * dimension - 1
 
 
-def pressure(dimension: int) -> int:
-    """``-V_j (p_i + p_j) F r_ij``, added up: 1, 2, and 2D."""
-    return 3 + 2 * dimension
+def pressure() -> int:
+    """``(p_i + p_j) F``: 2."""
+    return 2
 
 
-def core(dimension: int) -> int:
-    """The soft core: depth 2, dashpot 2, their product 3, added up along ``r_ij``: 2D."""
-    return 7 + 2 * dimension
+def core() -> int:
+    """The soft core: depth 2, dashpot 2, their product 2, to the rest of the push 1."""
+    return 7
 
 
-def artificial_viscosity(dimension: int) -> int:
-    """Monaghan's: two densities 2, the regularised distance 1, one reciprocal for both 2, ``μ`` 3,
-    ``α c0 - β μ`` times ``μ`` 3, densities 3, the push 3, added up along ``r_ij``: 2D."""
-    return 17 + 2 * dimension
+def artificial_viscosity() -> int:
+    """Monaghan's without its quadratic term: the other's density 1, the regularised distance 1,
+    both densities 1, one reciprocal for both 2, ``μ`` 2, times densities and slope 3, to the rest
+    of the push 1."""
+    return 11
+
+
+def push(dimension: int) -> int:
+    """What pushes the pair apart, times either volume 2, added up along ``r_ij`` twice: 4D."""
+    return 2 + 4 * dimension
 
 
 def continuity() -> int:
-    """``(ρ_i/ρ0) V_j (u_ij · r_ij) F``, added up: 4."""
-    return 4
+    """``(u_ij · r_ij) F``: 1."""
+    return 1
 
 
 def fourtakas(dimension: int) -> int:
-    """Density diffusion: ``g · r_ij`` 2D - 1, its second order 3, the excess 2, the rate 2, added
-    up: 2."""
-    return 2 * dimension + 8
+    """Density diffusion: ``g · r_ij`` 2D - 1, its rate 1, the excess 2, their product 1, the second
+    order 3."""
+    return 2 * dimension + 6
+
+
+def rates() -> int:
+    """The other's density 1, what either gets 6, times either volume and added up: 4."""
+    return 11
 
 
 def of_a_pair(dimension: int) -> int:
-    """Both sweeps of a step with artificial viscosity and Fourtakas' diffusion."""
-    forces = geometry(dimension) + approach(dimension) + pressure(dimension)
-    forces += core(dimension) + artificial_viscosity(dimension)
-    rates = geometry(dimension) + approach(dimension) + continuity() + fourtakas(dimension)
-    return forces + rates
+    """Of a directed pair in both sweeps, with artificial viscosity and Fourtakas' diffusion."""
+    shared = geometry(dimension) + approach(dimension)
+    forces = shared + pressure() + core() + artificial_viscosity() + push(dimension)
+    density = shared + continuity() + fourtakas(dimension) + rates()
+    return (forces + density) // 2

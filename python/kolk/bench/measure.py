@@ -54,7 +54,7 @@ class Figures:
     pairs_in_sweeps: float
     """Per second, over the time of the two sweeps that visit pairs."""
     flops_per_pair: int
-    """Of both sweeps together."""
+    """Of both sweeps together, for one neighbour of a particle."""
     share_of_peak: float
     """Of the machine's peak in this precision, while it sweeps."""
     bytes_per_particle: float

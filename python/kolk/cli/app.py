@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from kolk.cli import accuracy, bench, cases, check, estimate, new, render, report, run
+from kolk.cli import accuracy, bench, cases, check, estimate, explain, new, render, run
 
 app = typer.Typer(
     name="kolk",
@@ -41,11 +41,11 @@ for verb in (
     run.run,
     cases.cases,
     check.check,
+    explain.explain,
     estimate.estimate,
     accuracy.accuracy,
     bench.bench,
     new.new,
     render.render,
-    report.report,
 ):
     app.command()(verb)

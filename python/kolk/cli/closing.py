@@ -19,6 +19,8 @@ def closing(run: Run) -> str:
             "Against the reference:\n" + _list(r["sentence"] for r in summary["references"])
         )
     parts.append(phases(summary["seconds"]))
+    if any(choice["automatic"] for choice in summary["choices"]):
+        parts.append(chosen(summary))
     parts.append(_files(run))
     if summary["notes"]:
         parts.append("Notes:\n" + _list(summary["notes"]))
@@ -56,6 +58,20 @@ def phases(seconds: dict[str, Any]) -> str:
         if time >= 0.0005 * total
     ]
     return "\n".join(["Time by phase:", *lines, f"  {'total':<14}{total:>9.2f} s  100.0 %"])
+
+
+def chosen(summary: dict[str, Any]) -> str:
+    """What the scene left to kolk, and why kolk chose as it did."""
+    made = [
+        f"{choice['key']} = {_value(choice['value'])}: {choice['reason']}"
+        for choice in summary["choices"]
+        if choice["automatic"]
+    ]
+    return "Chosen by kolk:\n" + _list(made)
+
+
+def _value(value: Any) -> str:
+    return f"{value:.4g}" if isinstance(value, float) else str(value).lower()
 
 
 def _files(run: Run) -> str:

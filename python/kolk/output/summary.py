@@ -6,6 +6,7 @@ import os
 import platform
 import sys
 from collections.abc import Mapping
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -129,6 +130,8 @@ def summary_of(
     seconds, limits, the seconds of them spent on steps, and the time by phase in the engine and
     outside it: over all sittings of a resumed run.
     """
+    from kolk.scene.automatic import choices
+
     scene = simulation.scene
     now = simulation.diagnostics
     steps, counts = simulation.step_count, simulation.particles
@@ -163,6 +166,7 @@ def summary_of(
         "momentum": now["momentum"],
         "stability": stability_report(recorder.folder.history, simulation.mach_warning),
         "effects": simulation.effects,
+        "choices": [asdict(choice) for choice in choices(scene)],
         "probes": {
             probe.name: {
                 "quantity": probe.quantity,

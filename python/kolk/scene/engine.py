@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import automatic
 from .model import Scene
 from .motion import Gravity
 
@@ -16,28 +17,20 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     if viscosity is not None and viscosity.artificial is not None:
         artificial = {"alpha": viscosity.artificial, "beta": viscosity.beta}
     if viscosity is not None and viscosity.laminar is not None:
-        # Morris' form loses half of the dissipation under a free surface, and is the better one
-        # between walls (Colagrossi et al., Phys. Rev. E 84 (2011) 026705).
-        # Morris' form does not keep angular momentum: on a wall that turns it would give the torque
-        # of the gradient of the velocity, to which a rigid rotation contributes.
-        turning = any(w.motion is not None and w.motion.turns for w in scene.wall)
-        form = "monaghan-gingold" if scene.free_surface or turning else "morris"
-        laminar = {"kinematic": viscosity.laminar, "form": form}
+        form = automatic.laminar_form(scene)
+        assert form is not None, "there is a laminar viscosity"
+        laminar = {"kinematic": viscosity.laminar, "form": form.value}
     diffusion = shifting = None
     wall: dict[str, Any] | None = None
-    if numerics.density_diffusion != "none":
-        diffusion = {"form": numerics.density_diffusion, "delta": numerics.delta}
-    shift = numerics.shifting
-    if shift == "auto":
-        shift = "sun"
-    if shift != "none":
-        shifting = {"form": shift, "free_surface": scene.free_surface}
-    damper = numerics.acoustic_damper
-    if damper == "auto":
-        damper = 0.3 if scene.free_surface else 0.0
-    if scene.wall:
-        wall = {"method": numerics.wall, "slip": scene.wall[0].slip}
-        wall["suction"] = not scene.free_surface
+    form_of_diffusion = automatic.density_diffusion(scene).value
+    if form_of_diffusion != "none":
+        diffusion = {"form": form_of_diffusion, "delta": numerics.delta}
+    form_of_shift = automatic.shifting(scene).value
+    if form_of_shift != "none":
+        shifting = {"form": form_of_shift, "free_surface": scene.free_surface}
+    method, suction = automatic.wall(scene), automatic.suction(scene)
+    if method is not None and suction is not None:
+        wall = {"method": method.value, "slip": scene.wall[0].slip, "suction": suction.value}
     gravity: Any = scene.gravity
     varying: list[dict[str, Any]] = []
     if isinstance(gravity, Gravity):
@@ -63,7 +56,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "artificial_viscosity": artificial,
         "laminar_viscosity": laminar,
         "density_diffusion": diffusion,
-        "acoustic_damper": damper or None,
+        "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,
         "wall": wall,
         "courant": numerics.courant,

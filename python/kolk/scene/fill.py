@@ -6,7 +6,7 @@ with as many layers behind its surface as the kernel reaches, the first half a c
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -210,15 +210,16 @@ def _expected_speed(scene: Scene, velocities: list[FloatArray], walls: list[_Par
     return max(*speeds, scene.numerics.expected_speed or 0.0, 0.0)
 
 
-def _drop(scene: Scene, fluids: list[_Part]) -> float:
-    """Height in m through which fluid can fall: to the floor of a tank, the top of another wall."""
+def fall_height(scene: Scene, fluids: Sequence[FloatArray]) -> float:
+    """Height in m through which fluid at ``fluids``, positions (n, D) in m, can fall: to the floor
+    of a tank, the top of another wall."""
     strength = float(np.linalg.norm(scene.weight))
     if strength == 0.0:
         return 0.0
     up = -scene.weight / strength
     half = 0.5 * scene.spacing
-    highest = max(float(np.max(p.position @ up)) for p in fluids) + half
-    lowest = min(float(np.min(p.position @ up)) for p in fluids) - half
+    highest = max(float(np.max(p @ up)) for p in fluids) + half
+    lowest = min(float(np.min(p @ up)) for p in fluids) - half
     for wall in scene.wall:
         if wall.shape is None:
             continue
@@ -235,7 +236,7 @@ def _sound_speed(scene: Scene, fluids: list[_Part], speed: float) -> tuple[float
     if given != "auto":
         return float(given), 0.0
     gravity = float(np.linalg.norm(scene.weight))
-    c0 = material.sound_speed(speed, _drop(scene, fluids), gravity)
+    c0 = material.sound_speed(speed, fall_height(scene, [p.position for p in fluids]), gravity)
     if c0 == 0.0:
         raise _error(
             ("fluid", scene.fluid[0].name, "sound_speed"),

@@ -124,10 +124,9 @@ class Scene(Model):
     @property
     def free_surface(self) -> bool:
         """Whether the fluid has one: as the scene says, else under gravity or without walls."""
-        if self.numerics.free_surface is not None:
-            return self.numerics.free_surface
-        open_axes = any(interval is None for interval in self.periodic_axes)
-        return bool(self.weight.any()) or (open_axes and not self.wall)
+        from .automatic import free_surface
+
+        return bool(free_surface(self).value)
 
     # Particles and the engine
 

@@ -335,7 +335,9 @@ class Probe(Model):
 class Numerics(Model):
     """How the equations are solved. The defaults suit free-surface flow."""
 
-    density_diffusion: Literal["antuono", "molteni", "fourtakas", "none"] = "antuono"
+    density_diffusion: Literal["auto", "antuono", "molteni", "fourtakas", "none"] = Field(
+        default="auto", description="auto: antuono"
+    )
     delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
         default=0.1, description="of the density diffusion"
     )
@@ -351,7 +353,7 @@ class Numerics(Model):
         default=None,
         description="whether the fluid has one; if absent: under gravity, or without walls",
     )
-    wall: Literal["adami", "dynamic"] = "adami"
+    wall: Literal["auto", "adami", "dynamic"] = Field(default="auto", description="auto: adami")
     courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
         default=None, description="the integrator's own if absent"
     )

@@ -1,0 +1,195 @@
+"""What a scene leaves to kolk, and what kolk makes of it: value and reason of every choice.
+
+The one place that resolves "auto" and keys that are absent: the engine's configuration takes the
+values from here, and the summary, `kolk check` and `kolk explain` the reasons.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from .model import Scene
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One key of the scene, resolved."""
+
+    key: str
+    value: str | float | bool
+    automatic: bool
+    """Whether kolk chose it; else the scene says so."""
+    reason: str
+    """Why this value; empty where the scene says so."""
+
+    def __str__(self) -> str:
+        value = f"{self.value:.4g}" if isinstance(self.value, float) else str(self.value).lower()
+        return f"{self.key} = {value}" + (f": {self.reason}" if self.reason else "")
+
+
+def _given(key: str, value: str | float | bool) -> Choice:
+    return Choice(key, value, False, "")
+
+
+def free_surface(scene: Scene) -> Choice:
+    """Whether the fluid has a free surface: decides how shifting, walls and viscosity treat it."""
+    key = "numerics.free_surface"
+    if scene.numerics.free_surface is not None:
+        return _given(key, scene.numerics.free_surface)
+    if scene.weight.any():
+        return Choice(key, True, True, "gravity acts across no period: fluid has a top")
+    if any(interval is None for interval in scene.periodic_axes) and not scene.wall:
+        return Choice(key, True, True, "there is no wall around the fluid")
+    held = "walls" if scene.wall else "periods"
+    return Choice(key, False, True, f"no gravity pulls it down, and {held} hold the fluid")
+
+
+def density_diffusion(scene: Scene) -> Choice:
+    """The form of density diffusion, or "none"."""
+    key = "numerics.density_diffusion"
+    given = scene.numerics.density_diffusion
+    if given != "auto":
+        return _given(key, given)
+    return Choice(
+        key,
+        "antuono",
+        True,
+        "keeps pressure free of noise and leaves water at rest alone, up to the free surface",
+    )
+
+
+def shifting(scene: Scene) -> Choice:
+    """The form of particle shifting, or "none"."""
+    key = "numerics.shifting"
+    given = scene.numerics.shifting
+    if given != "auto":
+        return _given(key, given)
+    if free_surface(scene).value:
+        reason = "keeps stretched tongues of fluid from breaking up, and leaves the surface alone"
+    else:
+        reason = "keeps particles evenly spread where pressure turns negative"
+    return Choice(key, "sun", True, reason)
+
+
+def acoustic_damper(scene: Scene) -> Choice:
+    """Bulk viscosity that takes up sound, over h c0; 0 for none."""
+    key = "numerics.acoustic_damper"
+    given = scene.numerics.acoustic_damper
+    if given != "auto":
+        return _given(key, float(given))
+    if free_surface(scene).value:
+        return Choice(key, 0.3, True, "impacts under a free surface make sound")
+    return Choice(key, 0.0, True, "without a free surface nothing strikes and makes sound")
+
+
+def laminar_form(scene: Scene) -> Choice | None:
+    """The form of the laminar viscosity; None without it."""
+    viscosity = scene.fluid[0].viscosity
+    if viscosity is None or viscosity.laminar is None:
+        return None
+    key = f"fluid.{scene.fluid[0].name}.viscosity.laminar"
+    # Colagrossi et al., Phys. Rev. E 84 (2011) 026705.
+    if free_surface(scene).value:
+        reason = "dissipates what it should under a free surface, where Morris' form loses half"
+        return Choice(f"{key} (form)", "monaghan-gingold", True, reason)
+    if any(wall.motion is not None and wall.motion.turns for wall in scene.wall):
+        # Morris' form does not keep angular momentum: on a wall that turns it would give the torque
+        # of the gradient of the velocity, to which a rigid rotation contributes.
+        reason = "keeps angular momentum, hence gives the torque on a wall that turns"
+        return Choice(f"{key} (form)", "monaghan-gingold", True, reason)
+    reason = "the more exact one where no surface is free"
+    return Choice(f"{key} (form)", "morris", True, reason)
+
+
+def wall(scene: Scene) -> Choice | None:
+    """The boundary method; None without walls."""
+    if not scene.wall:
+        return None
+    key = "numerics.wall"
+    given = scene.numerics.wall
+    if given != "auto":
+        return _given(key, given)
+    reason = "pressure at the wall from the fluid before it: any shape, no penetration"
+    return Choice(key, "adami", True, reason)
+
+
+def suction(scene: Scene) -> Choice | None:
+    """Whether walls may pull at the fluid; None without walls."""
+    if not scene.wall:
+        return None
+    key = "walls may pull"
+    if free_surface(scene).value:
+        return Choice(key, False, True, "fluid under a free surface lets go of a wall")
+    return Choice(key, True, True, "a fluid that fills its space cannot leave a wall")
+
+
+def smoothing_ratio(scene: Scene) -> Choice:
+    """Smoothing length over spacing."""
+    key = "smoothing_ratio"
+    assert scene.smoothing_ratio is not None, "resolved when the scene is made"
+    if "smoothing_ratio" in scene.model_fields_set:
+        return _given(key, scene.smoothing_ratio)
+    reason = "smaller ones resist shear like a solid"
+    if scene.dimension == 3:
+        reason += "; larger ones cost more than they gain in 3D"
+    return Choice(key, scene.smoothing_ratio, True, reason)
+
+
+def courant(scene: Scene) -> Choice:
+    """What sets the time step: a fixed one, a Courant number, or the integrator's own."""
+    numerics = scene.numerics
+    if numerics.time_step is not None:
+        return _given("numerics.time_step", numerics.time_step)
+    if numerics.courant is not None:
+        return _given("numerics.courant", numerics.courant)
+    reason = "what the integrator bears, less a margin"
+    return Choice("numerics.courant", 0.5, True, reason)
+
+
+def sound_speed(scene: Scene) -> Choice:
+    """The speed of sound in m/s: what it was chosen from. Fills the scene with particles."""
+    fluid = scene.fluid[0]
+    key = f"fluid.{fluid.name}.sound_speed"
+    if fluid.sound_speed != "auto":
+        return _given(key, scene.sound_speed)
+    filling = scene.filling
+    speed = filling.expected_speed
+    fall = 0.0
+    strength = float(np.linalg.norm(scene.weight))
+    if strength > 0.0:
+        from .fill import fall_height
+
+        fall = fall_height(scene, [b.position for b in filling.bodies if b.kind == "fluid"])
+    if fall > 0.0 and abs(2.0 * np.sqrt(strength * fall) - speed) <= 1e-9 * speed:
+        source = f"2 sqrt(g H) of a front that collapses through H = {fall:.4g} m"
+    elif scene.numerics.expected_speed == speed:
+        source = "numerics.expected_speed"
+    else:
+        source = "the fastest that the scene starts or moves with"
+    return Choice(key, scene.sound_speed, True, f"ten times {speed:.4g} m/s, {source}")
+
+
+CHOICES: tuple[Callable[[Scene], Choice | None], ...] = (
+    free_surface,
+    smoothing_ratio,
+    density_diffusion,
+    shifting,
+    acoustic_damper,
+    laminar_form,
+    wall,
+    suction,
+    courant,
+    sound_speed,
+)
+"""Everything that a scene may leave to kolk."""
+
+
+def choices(scene: Scene) -> tuple[Choice, ...]:
+    """All keys that a scene may leave to kolk, resolved. Raises SceneError as filling does."""
+    found = (choose(scene) for choose in CHOICES)
+    return tuple(choice for choice in found if choice is not None)

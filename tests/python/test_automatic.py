@@ -1,0 +1,118 @@
+"""What a scene leaves to kolk: one resolution for the engine, the summary and the user."""
+
+from __future__ import annotations
+
+import json
+
+import pytest
+
+import kolk
+from kolk import cases
+from kolk.cli.closing import closing
+from kolk.scene import automatic
+from kolk.scene.automatic import CHOICES, choices
+from tanks import tank, vortex
+
+GIVEN = {
+    "smoothing_ratio": 1.5,
+    "numerics": {
+        "density_diffusion": "fourtakas",
+        "shifting": "none",
+        "acoustic_damper": 0.1,
+        "free_surface": True,
+        "wall": "dynamic",
+        "courant": 0.3,
+    },
+}
+
+
+def test_what_the_scene_says_is_not_chosen():
+    scene = tank(**GIVEN).replace({"fluid.water.sound_speed": 40.0})
+    found = {choice.key: choice for choice in choices(scene)}
+    told = {
+        "smoothing_ratio": 1.5,
+        "fluid.water.sound_speed": 40.0,
+        **{f"numerics.{key}": value for key, value in GIVEN["numerics"].items()},
+    }
+    for key, value in told.items():
+        assert found[key].value == value
+        assert not found[key].automatic
+        assert found[key].reason == ""
+    assert [c.key for c in found.values() if c.automatic] == ["walls may pull"]
+
+
+@pytest.mark.parametrize("scene", [tank(), vortex()], ids=["tank", "vortex"])
+def test_every_choice_has_a_reason(scene):
+    for choice in choices(scene):
+        assert choice.automatic
+        assert len(choice.reason) > 10
+        assert choice.reason in str(choice)
+        assert choice.key in str(choice)
+
+
+def test_the_engine_is_told_what_was_chosen():
+    for scene in (tank(), vortex(), tank(**GIVEN)):
+        config = json.loads(scene.engine_config())
+        diffusion = automatic.density_diffusion(scene).value
+        assert config["density_diffusion"]["form"] == diffusion
+        shifting = automatic.shifting(scene).value
+        if shifting == "none":
+            assert config["shifting"] is None
+        else:
+            surface = automatic.free_surface(scene).value
+            assert config["shifting"] == {"form": shifting, "free_surface": surface}
+        assert config["acoustic_damper"] == (automatic.acoustic_damper(scene).value or None)
+        form = automatic.laminar_form(scene)
+        assert (form is None) == (config["laminar_viscosity"] is None)
+        if form is not None:
+            assert config["laminar_viscosity"]["form"] == form.value
+        wall, suction = automatic.wall(scene), automatic.suction(scene)
+        assert (wall is None) == (config["wall"] is None)
+        if wall is not None and suction is not None:
+            assert config["wall"]["method"] == wall.value
+            assert config["wall"]["suction"] == suction.value
+        assert config["sound_speed"] == automatic.sound_speed(scene).value
+
+
+def test_free_surface_is_seen_for_what_it_is():
+    assert automatic.free_surface(tank()).value is True
+    assert "gravity" in automatic.free_surface(tank()).reason
+    closed = tank(gravity=None, numerics={"expected_speed": 1.0})
+    assert automatic.free_surface(closed).value is False
+    assert "walls" in automatic.free_surface(closed).reason
+    assert automatic.free_surface(vortex()).value is False
+    assert "periods" in automatic.free_surface(vortex()).reason
+    drop = closed.replace(wall=None)
+    assert automatic.free_surface(drop).value is True
+    # Gravity along a period drives a flow and makes no top.
+    driven = vortex(gravity=[1.0, 0.0])
+    assert automatic.free_surface(driven).value is False
+
+
+def test_the_sound_speed_says_what_it_came_from():
+    falling = automatic.sound_speed(tank())
+    assert "H = 0.3 m" in falling.reason
+    told = automatic.sound_speed(tank(numerics={"expected_speed": 50.0}))
+    assert told.value == pytest.approx(500.0)
+    assert "numerics.expected_speed" in told.reason
+    moving = automatic.sound_speed(vortex())
+    assert "starts" in moving.reason
+
+
+def test_every_case_can_say_what_was_chosen():
+    for name in cases.names():
+        scene = cases.get(name).scene
+        for choose in CHOICES:
+            choice = choose(scene)
+            assert choice is None or str(choice)
+
+
+def test_the_summary_and_the_last_words_of_a_run_name_the_choices(tank, monkeypatch):
+    scene = kolk.load(tank)
+    run = kolk.run(scene, "runs/tank", quiet=True, threads=1)
+    told = {choice["key"]: choice for choice in run.summary["choices"]}
+    assert told["numerics.shifting"]["value"] == "sun"
+    assert told["numerics.shifting"]["automatic"] is True
+    words = closing(run)
+    for choice in choices(scene):
+        assert str(choice) in words
