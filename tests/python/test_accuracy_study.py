@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 from concurrent.futures import Future, ThreadPoolExecutor
 from pathlib import Path
 from typing import Any
@@ -328,3 +329,43 @@ def test_the_command(tank: Path) -> None:
     assert Path("studies/tank/accuracy.png").is_file()
     bad = CliRunner().invoke(app, ["accuracy", str(tank), "--spacings", "a"])
     assert bad.exit_code == 2
+
+
+def only_inside(path: Path) -> str:
+    """The text of a report, which must need nothing outside of itself."""
+    text = path.read_text(encoding="utf-8")
+    assert text.startswith("<!DOCTYPE html>") and text.rstrip().endswith("</html>")
+    for source in re.findall(r'(?:src|href)="([^"]{0,40})', text):
+        assert source.startswith("data:"), source
+    assert "http://" not in text and "https://" not in text and "<script" not in text
+    return text
+
+
+def test_the_report_of_a_study_is_one_file(study: kolk.Study) -> None:
+    from kolk.report import report
+
+    text = only_inside(report(study.folder))
+    assert "data:image/png;base64," in text
+    for part in ("kernel=cubic", "Error against time", "kolk accuracy scene.toml", "extrapolat"):
+        assert part in text
+
+
+def test_the_report_of_a_run_is_one_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from kolk.report import report
+
+    monkeypatch.chdir(tmp_path)
+    scene = small().replace({"title": "A <tank> & more"})
+    accuracy(scene, [0.05, 0.04, 0.03333], threads=1, quiet=True)
+    run = kolk.run(scene.replace(spacing=0.04), threads=1, quiet=True, pictures=False)
+    (run.folder / "pictures").mkdir(exist_ok=True)
+    text = only_inside(report(run.folder))
+    assert "A &lt;tank&gt; &amp; more" in text
+    for part in ("Costs by phase", "Stability", "error bar", "kolk run scene.toml", "scene.toml"):
+        assert part in text
+    killed = tmp_path / "killed"
+    killed.mkdir()
+    scene.save(killed / "scene.toml")
+    (killed / "probes").mkdir()
+    assert "unfinished" in only_inside(report(killed))
+    with pytest.raises(RunError, match="neither"):
+        report(tmp_path)

@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from kolk.cli import accuracy, bench, cases, check, estimate, explain, new, render, run
+from kolk.cli import accuracy, bench, cases, check, estimate, explain, new, render, report, run
 
 app = typer.Typer(
     name="kolk",
@@ -47,5 +47,6 @@ for verb in (
     bench.bench,
     new.new,
     render.render,
+    report.report,
 ):
     app.command()(verb)

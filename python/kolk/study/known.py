@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import math
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kolk.errors import KolkError
 
+from .job import machine_name, package_digest
 from .store import STUDIES
 
 if TYPE_CHECKING:
@@ -27,11 +29,15 @@ def study_of(scene: Scene, root: Path | None = None) -> Study | None:
     found = sorted(place.glob("*/study.json"), key=lambda path: path.stat().st_mtime, reverse=True)
     for path in found:
         try:
+            # Of another version or another machine it would promise what is no longer true.
+            about = json.loads(path.read_text(encoding="utf-8"))
+            if (about.get("machine"), about.get("package")) != (machine_name(), package_digest()):
+                continue
             study = open_study(path.parent)
             if same_scene(study.scene, scene) and study.base.records:
                 return study
-        except (KolkError, OSError, KeyError):
-            continue  # of another version, or without its runs: as good as none
+        except (KolkError, OSError, ValueError):
+            continue  # broken, or without its runs: as good as none
     return None
 
 

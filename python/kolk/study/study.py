@@ -17,7 +17,7 @@ from kolk.output.atomic import storage_error, write_json, write_text
 from kolk.output.folder import safe_name
 
 from .curve import Curve, Ladder, ladder
-from .job import Job, machine_name, make_job
+from .job import Job, machine_name, make_job, package_digest
 from .ladder import DEFAULT, Variant, check_spacings, default_spacings, variants
 from .pareto import pareto_front
 from .record import Record
@@ -147,6 +147,7 @@ class Study:
             ],
             "sentences": self.sentences,
             "machine": machine_name(),
+            "package": package_digest(),
             "notes": list(self.notes),
         }
         try:
@@ -288,17 +289,18 @@ def open_study(folder: str | Path) -> Study:
             f"{place} is not the folder of a study (its study.json cannot be read): "
             "make one with  kolk accuracy SCENE"
         ) from error
-    runs = Path(os.path.normpath(place / data["store"]))
-    tried = tuple(Variant(v["label"], v["changes"]) for v in data["variants"])
     records: dict[str, tuple[Record, ...]] = {}
+    runs: Path | str = "its store"
     try:
+        runs = Path(os.path.normpath(place / data["store"]))
+        tried = tuple(Variant(v["label"], v["changes"]) for v in data["variants"])
         for entry in data["variants"]:
             found = [Record.load(runs / key) for key in entry["runs"]]
             records[entry["label"]] = tuple(found)
     except (OSError, ValueError, KeyError) as error:
         raise RunError(
             f"the runs of the study {place} are no longer in {runs}: "
-            f"make it again with  kolk accuracy {data['scene']}"
+            f"make it again with  kolk accuracy {data.get('scene', 'SCENE')}"
         ) from error
     return Study(load(place / "scene.toml"), tried, records, place, runs, data["quantity"])
 
