@@ -16,6 +16,7 @@ NAMES = (
     "dam-break",
     "dam-break-box",
     "dam-break-column",
+    "dam-break-decourcy",
     "poiseuille",
     "standing-wave",
     "still-water",
