@@ -87,6 +87,15 @@ def write_text(path: Path, text: str, doing: str) -> None:
         raise storage_error(path, error, doing) from error
 
 
+def write_bytes(path: Path, data: bytes, doing: str) -> None:
+    """Writes `data` to `path` as a whole; `RunError` ("cannot `doing` ...") where it cannot."""
+    try:
+        with replacing(path) as temporary:
+            temporary.write_bytes(data)
+    except OSError as error:
+        raise storage_error(path, error, doing) from error
+
+
 def write_json(path: Path, value: Mapping[str, Any], doing: str) -> None:
     """Writes `value` as indented JSON, as a whole. Numbers that are not finite become null."""
     text = json.dumps(_plain(value), indent=2, ensure_ascii=False, allow_nan=False)

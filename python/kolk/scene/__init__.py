@@ -5,6 +5,7 @@ from __future__ import annotations
 from .composed import Difference, Function, Union
 from .fill import Body, Filling
 from .load import load, loads
+from .mesh import Mesh, Outline
 from .model import KERNEL_SUPPORT, Scene
 from .parts import (
     FieldProbe,
@@ -37,7 +38,9 @@ __all__ = [
     "FrontProbe",
     "Function",
     "LevelProbe",
+    "Mesh",
     "Numerics",
+    "Outline",
     "Output",
     "Periodic",
     "Polygon",

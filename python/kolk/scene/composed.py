@@ -14,6 +14,7 @@ from kolk.errors import Problem, SceneError
 from . import distance
 from .base import Model, shown
 from .expression import Expression
+from .mesh import Mesh, Outline
 from .shapes import (
     Axis,
     Bounds,
@@ -101,6 +102,8 @@ class ShapeTable(Model):
     cylinder: Cylinder | None = None
     polygon: Polygon | None = None
     tank: Tank | None = None
+    mesh: Mesh | None = None
+    outline: Outline | None = None
     union: tuple[ShapeTable, ...] | None = Field(default=None, min_length=1)
     difference: Difference | None = None
     function: Function | None = None

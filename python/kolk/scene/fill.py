@@ -226,7 +226,7 @@ def fall_height(scene: Scene, fluids: Sequence[FloatArray]) -> float:
         low, high = wall.shape.shape.bounds()
         corners = np.stack([g.ravel() for g in np.meshgrid(*zip(low, high, strict=True))], axis=1)
         heights = corners @ up
-        floor = heights.min() if wall.shape.tank is not None else heights.max()
+        floor = heights.min() if wall.shape.shape.hollow() else heights.max()
         lowest = min(lowest, float(floor))
     return highest - lowest
 

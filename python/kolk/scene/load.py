@@ -11,6 +11,7 @@ from typing import Any
 from kolk.errors import KolkError, SceneError
 
 from .base import nearest
+from .mesh import place_shapes
 from .model import Scene
 from .motion import place_files
 
@@ -50,6 +51,7 @@ def loads(text: str, folder: str | Path = ".") -> Scene:
             if isinstance(entry, dict) and isinstance(entry.get("particles"), str):
                 entry["particles"] = str(Path(folder) / entry["particles"])
     place_files(data, Path(folder))
+    place_shapes(data, Path(folder))
     if isinstance(data.get("probe"), dict):
         raise SceneError("probe: found one table, must be a list: write [[probe]]")
     return Scene(**data)

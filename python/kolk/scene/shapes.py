@@ -51,6 +51,10 @@ class Shape(Model):
         low, high = self.bounds()
         return float(np.prod(np.maximum(high - low, 0.0)))
 
+    def hollow(self) -> bool:
+        """Whether the solid is what lies outside of a closed space, as a vessel's wall does."""
+        return False
+
     def dimensions(self) -> set[int]:
         """The dimensions in which the shape exists."""
         return {2, 3}
@@ -164,6 +168,9 @@ class Tank(FromTo):
             low[axis] -= 0.0 if (axis, 0) in is_open else thickness
             high[axis] += 0.0 if (axis, 1) in is_open else thickness
         return low, high
+
+    def hollow(self) -> bool:
+        return True
 
     def distance(self, points: FloatArray) -> FloatArray:
         return -distance.box(points, *self.inner())

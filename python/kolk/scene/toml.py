@@ -9,7 +9,7 @@ import tomlkit
 from tomlkit.items import AoT, InlineTable, Item, Table
 
 from kolk.errors import Problem, SceneError
-from kolk.output.atomic import write_text
+from kolk.output.atomic import write_bytes, write_text
 
 from .arrays import Particles
 from .expression import Expression
@@ -51,7 +51,27 @@ def save(scene: Scene, path: Path) -> None:
                     entry.pop(key, None)
                 entry["sound_speed"] = scene.sound_speed
             entry["particles"] = file.name
+    for table in ("fluid", "wall"):
+        for entry in data.get(table, []):
+            _bring_files(entry.get("shape"), path, entry["name"])
     write_text(path, _text(data), "write the scene")
+
+
+def _bring_files(shape: Any, path: Path, name: str) -> None:
+    """Copy the files of a shape beside the scene file, under names of the body's own."""
+    if isinstance(shape, list):
+        for i, part in enumerate(shape, 1):
+            _bring_files(part, path, f"{name}-{i}")
+    elif isinstance(shape, dict):
+        for kind, part in shape.items():
+            if kind in ("mesh", "outline"):
+                source = Path(part["file"])
+                copy = path.with_name(f"{name}{source.suffix.lower()}")
+                if not copy.exists() or not copy.samefile(source):
+                    write_bytes(copy, source.read_bytes(), "copy a shape's file")
+                part["file"] = copy.name
+            elif kind in ("union", "difference", "of", "minus"):
+                _bring_files(part, path, f"{name}-{kind}" if kind != "difference" else name)
 
 
 def _beyond_text(scene: Scene) -> list[tuple[str, ...]]:
