@@ -9,6 +9,9 @@ import typer
 
 from kolk.cli.gate import gated
 
+SECONDS = 5.0
+"""About how long the effects are measured for."""
+
 
 @gated
 def report(
@@ -21,8 +24,14 @@ def report(
     out: Annotated[
         Path | None, typer.Option("--out", help="The file.", show_default="RUN/report.html")
     ] = None,
+    effects: Annotated[
+        bool,
+        typer.Option(
+            "--effects/--no-effects", help="Measure what each effect costs, in some seconds."
+        ),
+    ] = True,
 ) -> None:
     """Write one self-contained HTML file about a run or a study."""
     from kolk.report import report as write
 
-    print(write(run, out))
+    print(write(run, out, effects=SECONDS if effects else 0.0))

@@ -13,11 +13,12 @@ from kolk.output.folder import newest_folder
 from kolk.study.store import STUDIES
 
 
-def report(folder: str | Path, out: str | Path | None = None) -> Path:
+def report(folder: str | Path, out: str | Path | None = None, *, effects: float = 0.0) -> Path:
     """Writes the report of a run or of a study, and returns its path.
 
     folder: of a run or a study, or its name under `runs/` or `studies/`. out: the file; without it
-    `report.html` in the folder. Raises `RunError` where there is neither.
+    `report.html` in the folder. effects: seconds to measure what each effect of a run costs on
+    this machine; 0 for not. Raises `RunError` where there is neither.
     """
     place = Path(folder)
     if not place.is_dir():
@@ -35,7 +36,7 @@ def report(folder: str | Path, out: str | Path | None = None) -> Path:
 
         from .run_page import run_page
 
-        text = run_page(Run(place))
+        text = run_page(Run(place), effects)
     else:
         raise RunError(
             f"{folder} is neither the folder of a run nor of a study: give one such as "

@@ -17,8 +17,11 @@ if TYPE_CHECKING:
     from kolk.study.study import Study
 
 
-def run_page(run: Run) -> str:
-    """The whole file. A run without a summary (killed) gets what there is."""
+def run_page(run: Run, effects: float = 0.0) -> str:
+    """The whole file. A run without a summary (killed) gets what there is.
+
+    effects: seconds to measure on this machine what each effect costs; 0 for not.
+    """
     scene, summary = run.scene, run.summary
     study = _study(run)
     title = str(scene.title or scene.name)
@@ -31,7 +34,7 @@ def run_page(run: Run) -> str:
             ("Pictures", "".join(picture(path) for path in _shown(run))),
             ("Probes", probe_curves(run, study) + _bars(run, study)),
             ("Costs by phase", _phases(summary)),
-            ("Effects", _effects(summary)),
+            ("Costs by effect" if effects else "Effects", _effects(run, effects)),
             ("Stability and energy", _stability(summary)),
             ("Settings", _settings(run)),
             ("Machine and versions", _machine(summary)),
@@ -132,7 +135,36 @@ def _phases(summary: dict[str, Any]) -> str:
     )
 
 
-def _effects(summary: dict[str, Any]) -> str:
+def _effects(run: Run, seconds: float) -> str:
+    """What each effect that is on costs, measured now; what the run knows of them otherwise."""
+    summary = run.summary
+    if not (seconds and summary):
+        return _carried(summary)
+    from kolk.explain import explain
+
+    try:
+        found = explain(run.scene, precision=summary["scene"]["precision"], seconds=seconds)
+    except KolkError as error:
+        return _carried(summary) + f"<p>What they cost could not be measured: {escape(error)}</p>"
+    rows = []
+    for effect in found.effects:
+        if not effect.on:
+            continue
+        cost = effect.cost
+        told: tuple[object, ...] = ("", "", "")
+        if cost is not None:
+            within = f"{cost.nanoseconds.value:.0f} ({cost.nanoseconds.low:.0f} to "
+            told = (f"{within}{cost.nanoseconds.high:.0f})", f"{cost.share:.1%}", bar(cost.share))
+        rows.append((effect.name, *told, effect.why, effect.source))
+    heads = ("effect", "ns a particle-step", "share", "", "why it is on", "source")
+    told_how = (
+        "Measured for this report by short runs with and without each effect, on one thread; "
+        "figures of a processor that does nothing else."
+    )
+    return table(heads, rows, 2) + f"<p>{told_how}</p>"
+
+
+def _carried(summary: dict[str, Any]) -> str:
     rows = [
         (
             effect["name"],
