@@ -20,14 +20,15 @@ if TYPE_CHECKING:
 
 
 def study_of(scene: Scene, root: Path | None = None) -> Study | None:
-    """The newest study of this very scene (its spacing apart) under `studies/`, or None."""
+    """The best study of this very scene (its spacing apart) under `studies/`, or None."""
     from .study import open_study
 
     place = root or STUDIES
     if not place.is_dir():
         return None
-    found = sorted(place.glob("*/study.json"), key=lambda path: path.stat().st_mtime, reverse=True)
-    for path in found:
+    newest = sorted(place.glob("*/study.json"), key=lambda path: path.stat().st_mtime, reverse=True)
+    found: list[Study] = []
+    for path in newest:
         try:
             # Of another version or another machine it would promise what is no longer true.
             about = json.loads(path.read_text(encoding="utf-8"))
@@ -35,10 +36,11 @@ def study_of(scene: Scene, root: Path | None = None) -> Study | None:
                 continue
             study = open_study(path.parent)
             if same_scene(study.scene, scene) and study.base.records:
-                return study
+                found.append(study)
         except (KolkError, OSError, ValueError):
             continue  # broken, or without its runs: as good as none
-    return None
+    # The one that knows most about settings; among equals the newest.
+    return max(found, key=lambda study: len(study.variants), default=None)
 
 
 def same_scene(one: Scene, other: Scene) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 from kolk.errors import SceneError
+from kolk.output.folder import safe_name
 from kolk.progress import duration
 from kolk.scene import Scene
 
@@ -13,6 +14,7 @@ from .estimate import Interval
 from .known import study_of
 from .ladder import DEFAULT, RATIO, default_spacings, snapped, snapped_finer
 from .promise import USED, Limits, Promise, PromiseError
+from .store import STUDIES
 from .study import Study, accuracy
 from .words import percent
 
@@ -55,6 +57,8 @@ def _study(scene: Scene, spacings: list[float], quantity: str | None, limits: Li
         scene,
         spacings,
         quantity=quantity,
+        # Beside a study of the user's own, which may have tried settings.
+        out=STUDIES / f"{safe_name(scene.name)}-for-tolerance",
         precision=limits.precision,
         threads=limits.threads,
         store=limits.store,
