@@ -155,6 +155,7 @@ def true_error(trial: Trial, scene: kolk.Scene, of: str, threads: int) -> float:
 
         class Shown:
             spacing = scene.spacing
+            compression = 0.0
 
         Shown.tracks = tracks(run)  # type: ignore[attr-defined]
         errors = [

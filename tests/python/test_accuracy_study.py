@@ -126,6 +126,19 @@ def test_a_variant_is_judged_by_the_limit_of_the_scene_as_it_is() -> None:
     assert other.curve("P").error[-1] > 0.1
 
 
+def test_compressibility_is_part_of_every_bar() -> None:
+    """No refinement removes what a weakly compressible fluid is off an incompressible one."""
+    given = [ladder(Variant(DEFAULT), [made_up(h, 0.0, 1.0, rows(h)) for h in LEVELS])]
+    given.append(
+        ladder(Variant(DEFAULT), [made_up(h, 0.0, 1.0, rows(h), compression=0.01) for h in LEVELS])
+    )
+    stiff, soft = (found.quantities[0] for found in given)
+    assert soft.level_bar(3) == pytest.approx(stiff.level_bar(3) + 0.02)
+    assert soft.bar_at(0.01) == pytest.approx(stiff.bar_at(0.01) + 0.02)
+    assert soft.statistic_bar("mean", 3) > stiff.statistic_bar("mean", 3)
+    assert soft.level_error(3) == stiff.level_error(3)
+
+
 def test_failed_runs_stand_apart() -> None:
     records = [made_up(h, 0.1, 1.0, rows(h)) for h in LEVELS]
     records.append(made_up(0.01, 0.1, 1.0, rows(0.01), outcome="unstable", reason="it burst"))

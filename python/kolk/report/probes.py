@@ -74,6 +74,7 @@ def _bar(axes: Axes, run: Run, quantity: Quantity, match: Comparison | None, shi
     time = table["time"].to_numpy(np.float64)
     value = table[column or "value"].to_numpy(np.float64)
     half = np.interp(time, quantity.time, expansion.bar(spacing))
+    half += quantity.floor * quantity.scale
     scale_time = scale_value = 1.0
     origin = moved = 0.0
     if match is not None:

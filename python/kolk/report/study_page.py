@@ -40,7 +40,8 @@ METHOD = """<p>Against an exact solution the error is the norm named, and its or
 log(error) over log(spacing) with Student's interval. Without one, a power series in the spacing is
 fitted to all levels (E&ccedil;a and Hoekstra 2014, J. Comput. Phys. 262, 104&ndash;130); the error
 bar is the grid convergence index of Roache (1994), 1.25 times the error that the fit leaves where
-the order is that of the scheme and 3 times it elsewhere, plus the scatter about the fit. Where the
+the order is that of the scheme and 3 times it elsewhere, plus the scatter about the fit, plus twice
+the compression of the fluid, the error of weak compressibility that no spacing removes. Where the
 levels show no convergence, no order is stated.</p>"""
 
 
@@ -110,7 +111,7 @@ def _record(quantity: Quantity) -> str:
             label = f"{spacing:.3g} m"
             axes.plot(quantity.time, quantity.value[i], color=ink, alpha=strength, label=label)
         if quantity.expansion is not None:
-            half = quantity.expansion.level_bar(levels - 1)
+            half = quantity.expansion.level_bar(levels - 1) + quantity.floor * quantity.scale
             finest = quantity.value[-1]
             axes.fill_between(
                 quantity.time,

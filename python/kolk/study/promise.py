@@ -189,6 +189,7 @@ class _Shown:
 
     spacing: float
     tracks: Any
+    compression: float = 0.0
 
 
 __all__ = ["Promise", "PromiseError", "choose", "outcome"]

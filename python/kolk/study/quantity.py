@@ -23,6 +23,11 @@ STATISTICS = ("mean", "largest", "last")
 
 LAST = 0.1
 
+COMPRESSIBLE = 2.0
+"""Share of a quantity's scale that a weakly compressible fluid may be off an incompressible one,
+over its compression: the error of the model, which no spacing removes (of order Ma², Monaghan
+1994). A column of still water, compressed by δ at its bottom, shows 1.8 δ there."""
+
 
 @dataclass(frozen=True)
 class Quantity:
@@ -44,6 +49,8 @@ class Quantity:
     expansion: Expansion | None = field(repr=False)
     """Of the whole record; None for fewer than three levels."""
     verdict: Verdict
+    floor: float = 0.0
+    """Share of the scale that the compressibility of the fluid adds to every error bar."""
 
     def level_error(self, level: int) -> float:
         """Distance (RMS over time) of a level from the extrapolated record, share of the scale.
@@ -60,16 +67,15 @@ class Quantity:
         """Half-width (RMS over time) of a level's error bar, share of the scale; NaN if unknown."""
         if self.expansion is None:
             return float("nan")
-        return _rms(self.expansion.level_bar(level)) / self.scale
+        return _rms(self.expansion.level_bar(level)) / self.scale + self.floor
 
     def bar_at(self, spacing: float) -> float:
         """Half-width of the error bar of a run at any spacing (m), share of the scale."""
         if self.expansion is None:
             return float("nan")
         expansion = self.expansion
-        return _rms(expansion.bar(spacing, np.full_like(expansion.limit, expansion.scatter))) / (
-            self.scale
-        )
+        off = np.full_like(expansion.limit, expansion.scatter)
+        return _rms(expansion.bar(spacing, off)) / self.scale + self.floor
 
     def statistic(self, name: str) -> Floats:
         """(n,) one of STATISTICS of every level."""
@@ -83,7 +89,8 @@ class Quantity:
         """Half-width of the error bar of a statistic of a level, in the quantity's unit."""
         if len(self.spacing) < 3:
             return float("nan")
-        return float(expand(self.spacing, self.statistic(name)).level_bar(level)[0])
+        bar = float(expand(self.spacing, self.statistic(name)).level_bar(level)[0])
+        return bar + self.floor * self.scale
 
     def reduced(self, statistic: str) -> Quantity:
         """One of STATISTICS as a quantity of its own, on the same scale."""
@@ -99,6 +106,7 @@ class Quantity:
             self.scale,
             expansion,
             judge_expansion(expansion, self.spacing.tolist(), self.scale),
+            self.floor,
         )
 
     def _peak(self) -> int:
@@ -112,6 +120,8 @@ class Recorded(Protocol):
     @property
     def spacing(self) -> float: ...
     @property
+    def compression(self) -> float: ...
+    @property
     def tracks(self) -> Mapping[str, Track]: ...
 
 
@@ -121,16 +131,17 @@ def quantities(records: Sequence[Recorded]) -> list[Quantity]:
     Columns that are zero to rounding on all levels (a sensor that stays dry) are left out.
     """
     by_size = sorted(records, key=lambda record: -record.spacing)
+    floor = COMPRESSIBLE * by_size[-1].compression if by_size else 0.0
     found: list[Quantity] = []
     for name in by_size[0].tracks if by_size else ():
         tracks = [record.tracks[name] for record in by_size if name in record.tracks]
         if len(tracks) == len(by_size) and all(len(track.rows) > 1 for track in tracks):
             spacing = np.array([record.spacing for record in by_size])
-            found += _columns(tracks, spacing)
+            found += _columns(tracks, spacing, floor)
     return found
 
 
-def _columns(tracks: Sequence[Track], spacing: Floats) -> list[Quantity]:
+def _columns(tracks: Sequence[Track], spacing: Floats, floor: float) -> list[Quantity]:
     first = tracks[0]
     clock = common_clock(tracks)
     values = {
@@ -153,7 +164,18 @@ def _columns(tracks: Sequence[Track], spacing: Floats) -> list[Quantity]:
         verdict = judge_expansion(expansion, spacing.tolist(), scale)
         unit = first.unit.split(",")[0]
         found.append(
-            Quantity(name, first.quantity, unit, spacing, clock, value, scale, expansion, verdict)
+            Quantity(
+                name,
+                first.quantity,
+                unit,
+                spacing,
+                clock,
+                value,
+                scale,
+                expansion,
+                verdict,
+                floor,
+            )
         )
     return found
 

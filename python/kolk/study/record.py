@@ -86,6 +86,8 @@ class Record:
     machine: str
     version: str
     until: float
+    compression: float = 0.0
+    """Largest density over the reference less one, in the median of its frames."""
     tracks: dict[str, Track] = field(default_factory=dict, repr=False)
 
     @property

@@ -98,8 +98,21 @@ def _record(
         machine=machine_name(),
         version=str(summary["kolk"]),
         until=float(summary["time"]["until"]),
+        compression=compression(run),
         tracks=tracks(run),
     )
+
+
+def compression(run: Run) -> float:
+    """How far the fluid is compressed: the largest density over the reference less one.
+
+    The median over the frames, since an impact passes; 0 where fluids of several densities hide it.
+    """
+    densities = {fluid.density for fluid in run.scene.fluid}
+    if len(densities) > 1 or not len(run.history):
+        return 0.0
+    largest = float(np.median(run.history["density_max"].to_numpy(np.float64)))
+    return max(largest / densities.pop() - 1.0, 0.0)
 
 
 def _scores(run: Run) -> list[Score]:
