@@ -167,6 +167,12 @@ def test_a_tolerance_that_the_budget_does_not_hold_is_refused(studied: dict[str,
         choose(tank(), tolerance=0.0005, budget=60.0, quiet=True)
 
 
+def test_what_is_far_out_of_reach_is_refused_before_more_is_run(studied: dict[str, Any]) -> None:
+    with pytest.raises(PromiseError, match=r"finest level that the study needs would take"):
+        choose(tank(), tolerance=1e-6, quiet=True)
+    assert len(studied["asked"]) == 1
+
+
 def test_nonsense_is_refused() -> None:
     with pytest.raises(PromiseError, match="tolerance"):
         choose(tank(), tolerance=3.0)

@@ -77,7 +77,8 @@ def _outcome(run: Run) -> str:
     text += f": {escape(summary['reason'])}</p>" if summary.get("reason") else "</p>"
     lines = list(summary.get("notes", []))
     promise = run.folder / "promise.json"
-    if promise.is_file():
+    # One older than the scene is of a run that was there before.
+    if promise.is_file() and promise.stat().st_mtime >= run.files.scene.stat().st_mtime:
         try:
             kept = json.loads(promise.read_text(encoding="utf-8"))
             lines = [*kept["promise"], *kept["outcome"], *lines]

@@ -9,7 +9,7 @@ from kolk.output.folder import safe_name
 from kolk.progress import duration
 from kolk.scene import Scene
 
-from .curve import Curve
+from .curve import REACH, Curve
 from .estimate import Interval
 from .known import study_of
 from .ladder import DEFAULT, RATIO, default_spacings, snapped, snapped_finer
@@ -39,9 +39,11 @@ def for_tolerance(scene: Scene, tolerance: float, quantity: str | None, limits: 
         if found is not None:
             return _promise(study, tolerance, found, limits)
         following = _next_level(study, tolerance)
-        cost = study.base.cost
-        seconds = cost.value(following) if cost is not None else 0.0
-        curve = study.curve()
+        cost, curve = study.base.cost, study.curve()
+        # The study would have to come within its reach of the spacing that the law leads to.
+        wanted = math.nan if curve.law is None else REACH * curve.law.spacing_for(tolerance)
+        needed = min(following, wanted) if 0.0 < wanted < following else following
+        seconds = cost.value(needed) if cost is not None else 0.0
         if seconds > limits.longest_level:
             raise PromiseError(_refusal(study, curve, tolerance, seconds, limits))
         if curve.verdict.kind == "not falling" and len(study.base.records) > FIRST_LEVELS:
@@ -159,7 +161,7 @@ def _nearest(study: Study) -> str:
 def _refusal(study: Study, curve: Curve, tolerance: float, seconds: float, limits: Limits) -> str:
     if seconds:
         why = (
-            f"the next level that the study needs would take about {duration(seconds)}, and "
+            f"the finest level that the study needs would take about {duration(seconds)}, and "
             f"{duration(max(limits.longest_level, 0.0))} are allowed for it"
         )
     elif curve.verdict.sound:
