@@ -140,6 +140,8 @@ def draw() -> None:
     found = results()
     choices = [choice for data in found for choice in data["choices"] if choice["cost"]]
     shown = list(dict.fromkeys(choice["label"] for choice in choices))
+    if not shown:
+        return
     with style.look():
         made = style.figure(8.0, 1.6 + 0.3 * max(len(shown), 3))
         made.set_layout_engine("constrained")

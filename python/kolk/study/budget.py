@@ -54,7 +54,7 @@ def for_budget(scene: Scene, budget: float, quantity: str | None, limits: Limits
         )
     left = USED * (budget - (clock.perf_counter() - begun))
     spacing = snapped_finer(base, _spacing_within(model, left))
-    if model.at(spacing).wall.value > left:
+    if model.wall(spacing) > left:
         spacing = _spacing_within(model, left)
     found = model.at(spacing)
     settings = "" if variant.label == DEFAULT else f" and {variant.label}"
@@ -129,7 +129,7 @@ def _spacing_within(model: CostModel, seconds: float) -> float:
     low, high = math.log(coarsest) - math.log(64.0), math.log(coarsest)
     for _ in range(40):
         middle = 0.5 * (low + high)
-        if model.at(math.exp(middle)).wall.value > seconds:
+        if model.wall(math.exp(middle)) > seconds:
             low = middle
         else:
             high = middle

@@ -179,17 +179,24 @@ class CostModel:
             pilots=(self.coarse, self.fine),
         )
 
+    def wall(self, spacing: float) -> float:
+        """Seconds of a run at a spacing (m), its particles not counted but estimated: quick."""
+        growth = self._about(spacing) / self.fine.total
+        return sum(self._parts(spacing, growth).values())
+
+    def _about(self, spacing: float) -> float:
+        """Particles by their number at the fine pilot: a rough count is as wrong at both."""
+        near = _estimated(self.scene.replace(spacing=self.fine.spacing))
+        return self.fine.total * _estimated(self.scene.replace(spacing=spacing)) / near
+
     def _particles(self, spacing: float) -> tuple[float, bool]:
         """Particles, and whether they were counted."""
         if abs(spacing / self.fine.spacing - 1.0) < 1e-12:
             return float(self.fine.total), True
         scene = self.scene.replace(spacing=spacing)
-        about = _estimated(scene)
-        if about <= AFFORDABLE:
+        if _estimated(scene) <= AFFORDABLE:
             return float(sum(len(body) for body in scene.bodies())), True
-        # The rough count is the same kind of wrong at both spacings.
-        near = _estimated(self.scene.replace(spacing=self.fine.spacing))
-        return self.fine.total * about / near, False
+        return self._about(spacing), False
 
     def _profile(self) -> Pilot:
         """The pilot that went farther."""
