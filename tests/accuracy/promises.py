@@ -16,6 +16,7 @@ import math
 import sys
 import tempfile
 import time as clock
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -63,7 +64,12 @@ def head(*cells: str) -> None:
     print("|" + "---|" * len(cells), flush=True)
 
 
-def bars(threads: int) -> None:
+def chosen_trials(cases: Sequence[str]) -> list[Trial]:
+    """The trials of the cases named; all for none."""
+    return [trial for trial in trials() if not cases or trial.case in cases]
+
+
+def bars(threads: int, cases: Sequence[str]) -> None:
     """Counts the bars that hold, over cases, probes, levels and statistics."""
     head(
         "case",
@@ -75,7 +81,7 @@ def bars(threads: int) -> None:
         "verdict",
     )
     held = total = 0
-    for trial in trials():
+    for trial in chosen_trials(cases):
         study = accuracy(
             trial.blind, trial.ladder, threads=threads, out=f"studies/{trial.blind.name}"
         )
@@ -114,11 +120,11 @@ def _statistic(name: str, exact: np.ndarray, finest: np.ndarray) -> float:
     return float(exact[-max(1, round(0.1 * len(exact))) :].mean())
 
 
-def tolerance(threads: int, *, blind: bool) -> None:
+def tolerance(threads: int, cases: Sequence[str], *, blind: bool) -> None:
     """Runs what each tolerance leads to and sets the true error beside it."""
     head("case", "reference", "tolerance", "spacing", "promised", "true error", "")
     kept = made = refused = 0
-    for trial in trials():
+    for trial in chosen_trials(cases):
         scene = trial.blind if blind else trial.known
         for wanted in TOLERANCES:
             told = "withheld" if blind else "known"
@@ -219,17 +225,18 @@ def main() -> int:
     kinds = ("bars", "tolerance", "budget", "estimates")
     parser.add_argument("kind", nargs="*", help=f"{', '.join(kinds)}; all if none is named")
     parser.add_argument("--blind", action="store_true", help="tolerances without the reference")
+    parser.add_argument("--case", action="append", default=[], help="only this case; repeatable")
     parser.add_argument("--threads", type=int, default=0, help="0: every core")
     chosen = parser.parse_args()
     if unknown := set(chosen.kind) - set(kinds):
         parser.error(f"nothing is called {', '.join(sorted(unknown))}: {', '.join(kinds)}")
     wanted = chosen.kind or kinds
     if "bars" in wanted:
-        bars(chosen.threads)
+        bars(chosen.threads, chosen.case)
     if "estimates" in wanted:
         estimates(chosen.threads)
     if "tolerance" in wanted:
-        tolerance(chosen.threads, blind=chosen.blind)
+        tolerance(chosen.threads, chosen.case, blind=chosen.blind)
     if "budget" in wanted:
         budget(chosen.threads)
     return 0

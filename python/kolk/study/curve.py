@@ -143,8 +143,8 @@ class Ladder:
 
     @cached_property
     def cost(self) -> PowerLaw | None:
-        """Wall time against spacing; its order is below 0."""
-        if len(self.records) < 2:
+        """Wall time against spacing; None for times that say nothing: too few, or not alone."""
+        if len(self.records) < 2 or not all(record.alone for record in self.records):
             return None
         return observed_order(self.spacing, self.wall)
 
