@@ -46,8 +46,9 @@ EVERYWHERE: dict[str, tuple[Any, ...]] = {
     "precision": ("f64",),
     "density_diffusion": ("molteni", "none"),
     "shifting": ("none",),
+    "courant": (0.25,),
 }
-"""Choices that every flow has."""
+"""Choices that every flow has; half the Courant number shows what the integrator is wrong by."""
 
 SURFACE: dict[str, tuple[Any, ...]] = {"wall": ("dynamic",), "acoustic_damper": (0.0,)}
 """Choices of flows with walls and a free surface."""

@@ -50,7 +50,12 @@ def keep(study: Study, case: str) -> None:
 def _choice(study: Study, label: str) -> dict[str, Any]:
     """Ratios of one alternative to the scene as it is; None where there is none."""
     rungs, base = study.ladders[label], study.base
-    found: dict[str, Any] = {"label": _name(label), "time": None, "error": None, "cost": None}
+    found: dict[str, Any] = {
+        "label": _name(study, label),
+        "time": None,
+        "error": None,
+        "cost": None,
+    }
     if not rungs.records:
         found["failed"] = rungs.failed[0].outcome if rungs.failed else "failed"
         return found
@@ -69,10 +74,10 @@ def _choice(study: Study, label: str) -> dict[str, Any]:
     return found
 
 
-def _name(label: str) -> str:
-    """A label without the name of the case's fluid, and without its sound speed."""
+def _name(study: Study, label: str) -> str:
+    """A label; a sound speed as a multiple of the automatic one, so that cases can be compared."""
     if ".sound_speed=" in label:
-        return "sound_speed=" + label.partition("=")[2]
+        return f"sound_speed × {float(label.partition('=')[2]) / study.scene.sound_speed:.2g}"
     return label
 
 
@@ -104,7 +109,7 @@ def page() -> str:
 
 def overview(found: Sequence[dict[str, Any]]) -> str:
     """All choices against all cases: time × error, and the cost for the same error."""
-    labels = list(dict.fromkeys(_row(c["label"]) for data in found for c in data["choices"]))
+    labels = list(dict.fromkeys(c["label"] for data in found for c in data["choices"]))
     lines = [
         "| choice | " + " | ".join(data["case"] for data in found) + " |",
         "|---|" + "---|" * len(found),
@@ -112,22 +117,16 @@ def overview(found: Sequence[dict[str, Any]]) -> str:
     for label in labels:
         cells = []
         for data in found:
-            mine = [c for c in data["choices"] if _row(c["label"]) == label]
+            mine = [c for c in data["choices"] if c["label"] == label]
             cells.append("; ".join(_cell(c) for c in mine))
         lines.append(f"| {label} | " + " | ".join(cells) + " |")
     return "\n".join(lines) + "\n"
-
-
-def _row(label: str) -> str:
-    return "sound_speed" if label.startswith("sound_speed=") else label
 
 
 def _cell(choice: dict[str, Any]) -> str:
     if choice.get("failed"):
         return str(choice["failed"])
     text = f"time {choice['time']:.2f}, error {choice['error']:.2f}"
-    if choice["label"].startswith("sound_speed="):
-        text = f"{choice['label'].partition('=')[2]} m/s: {text}"
     return text + (f", **cost {choice['cost']:.2f}**" if choice["cost"] else "")
 
 

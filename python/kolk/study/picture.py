@@ -30,8 +30,14 @@ INKS = (
     "#005f73",
     "#bb3e03",
     "#588157",
+    "#e07a9b",
+    "#3d405b",
+    "#94a61b",
 )
-MARKERS = "osD^vP<>Xh"
+MARKERS = "osD^vP<>Xhp*d"
+
+CROWDED = 5
+"""Ladders from which on their names stand beside the picture."""
 
 
 def picture(study: Study, path: Path | None = None) -> Figure:
@@ -42,7 +48,8 @@ def picture(study: Study, path: Path | None = None) -> Figure:
     if study.leading == ALL_PROBES and scored:
         names.append(scored[0].name)
     with style.look():
-        made = style.figure(7.0 * (1.0 if len(names) == 1 else 1.5), 4.8)
+        wide = 2.4 if len(study.ladders) >= CROWDED else 0.0
+        made = style.figure(7.0 * (1.0 if len(names) == 1 else 1.5) + wide, 4.8)
         made.set_layout_engine("constrained")
         for i, name in enumerate(names):
             axes = made.add_subplot(1, len(names), i + 1)
@@ -54,6 +61,9 @@ def picture(study: Study, path: Path | None = None) -> Figure:
             fontweight="bold",
             fontsize=11,
         )
+        if len(study.ladders) >= CROWDED:
+            handles, labels = made.axes[0].get_legend_handles_labels()
+            made.legend(handles, labels, loc="outside right upper", fontsize=7.5)
         if path is not None:
             style.save(made, path)
     return made
@@ -87,7 +97,8 @@ def _panel(axes: Axes, study: Study, name: str, *, front: bool) -> None:
     }[study.base.curve(name).basis]
     axes.set_title(f"{name}, against the {against}")
     axes.margins(0.14)
-    axes.legend(loc="best", fontsize=7.5)
+    if len(study.ladders) < CROWDED:
+        axes.legend(loc="best", fontsize=7.5)
 
 
 def _draw(
