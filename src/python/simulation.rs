@@ -245,7 +245,11 @@ impl PySimulation {
         dict.set_item("pressure_min", d.pressure_min)?;
         dict.set_item("pressure_max", d.pressure_max)?;
         dict.set_item("closest_pair", d.closest_pair)?;
-        dict.set_item("dissipated", PyDict::new(py))?;
+        let dissipated = PyDict::new(py);
+        for (name, energy) in d.dissipated {
+            dissipated.set_item(name, energy)?;
+        }
+        dict.set_item("dissipated", dissipated)?;
         Ok(dict)
     }
 

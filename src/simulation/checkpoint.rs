@@ -2,6 +2,7 @@
 //!
 //! The order of the particles and the cells they were sorted into belong to it: they decide the order of every sum.
 
+use super::budget::ENTRIES;
 use super::solver::Solver;
 use crate::error::{Error, Result};
 use crate::particles::Column;
@@ -154,11 +155,15 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 s.density_max,
             ]),
         );
+        let b = &self.budget;
+        let budget = b.taken.iter().chain(&b.power).chain([&b.time]);
+        put("budget", Entry::Reals(budget.copied().collect()));
         let mut counters = vec![
             self.step,
             u64::from(self.primed),
             self.limit as u64,
             u64::from(s.finite),
+            u64::from(self.budget.collided),
         ];
         counters.extend(self.steps_by_limit);
         put("counters", Entry::Integers(counters));
@@ -221,7 +226,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
         let s = from.reals("scalars", 8)?;
         (self.time, self.time_step, self.travelled, self.mach_max) = (s[0], s[1], s[2], s[3]);
-        let c = from.integers("counters", 4 + Limit::ALL.len())?;
+        let b = from.reals("budget", 2 * ENTRIES + 1)?;
+        self.budget.taken.copy_from_slice(&b[..ENTRIES]);
+        self.budget.power.copy_from_slice(&b[ENTRIES..2 * ENTRIES]);
+        self.budget.time = b[2 * ENTRIES];
+        let c = from.integers("counters", 5 + Limit::ALL.len())?;
         self.step = c[0];
         self.primed = c[1] != 0;
         self.limit = *Limit::ALL.get(c[2] as usize).unwrap_or(&Limit::Acoustic);
@@ -232,7 +241,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
             density_max: s[7],
             finite: c[3] != 0,
         };
-        self.steps_by_limit.copy_from_slice(&c[4..]);
+        self.steps_by_limit.copy_from_slice(&c[5..]);
+        self.budget.collided = c[4] != 0;
         self.set_gravity(self.time);
         self.sweeper.wipe();
         Ok(())

@@ -1,6 +1,7 @@
 //! A simulation: assembled from a configuration and particles, advanced in time, looked at.
 
 mod assembly;
+mod budget;
 mod checkpoint;
 mod config;
 mod diagnostics;

@@ -1,5 +1,6 @@
 //! The loop: one step is a screen.
 
+use super::budget::Budget;
 use super::config::{Config, ViscosityForm};
 use super::gravity::Gravity;
 use super::timers::{Phase, Timers};
@@ -59,6 +60,7 @@ pub struct Solver<R, const D: usize> {
     pub(super) travelled: f64,
     pub(super) skin: f64,
     pub(super) mach_max: f64,
+    pub(super) budget: Budget,
     pub(super) timers: Timers,
 }
 
@@ -154,6 +156,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             travelled: 0.0,
             skin: SKIN * support,
             mach_max: 0.0,
+            budget: Budget::default(),
             timers: Timers::default(),
         })
     }
@@ -239,6 +242,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.move_walls(self.time + 0.5 * dt);
         self.update_walls();
         self.sum_forces();
+        self.audit(dt);
         let speed = self.motion.second_half(&mut self.fluid, dt);
         self.travelled += 0.5 * dt * speed;
         self.timers.book(Phase::Integrate);

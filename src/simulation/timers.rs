@@ -20,10 +20,12 @@ pub enum Phase {
     Shift,
     /// Checks.
     Guard,
+    /// The powers of the effects, once in some steps.
+    Budget,
 }
 
 /// Names of the phases, in their order.
-pub const PHASES: [&str; 7] = [
+pub const PHASES: [&str; 8] = [
     "sort",
     "walls",
     "forces",
@@ -31,6 +33,7 @@ pub const PHASES: [&str; 7] = [
     "integrate",
     "shift",
     "guard",
+    "budget",
 ];
 
 /// Seconds and calls per phase.

@@ -46,8 +46,13 @@ impl<const D: usize> Blocks<D> {
         Blocks { cells, count }
     }
 
-    /// Runs `work` on every block, colour by colour.
-    pub(super) fn for_each(&self, work: impl Fn(&BlockOfCells<D>) + Sync) {
+    /// Number of blocks.
+    pub(super) fn count(&self) -> usize {
+        self.count.iter().product()
+    }
+
+    /// Runs `work` on every block with its number, colour by colour.
+    pub(super) fn for_each(&self, work: impl Fn(usize, &BlockOfCells<D>) + Sync) {
         for colour in 0..1usize << D {
             let of_axis = |a: usize| colour >> a & 1;
             if (0..D).any(|a| self.count[a] == 1 && of_axis(a) == 1) {
@@ -65,11 +70,13 @@ impl<const D: usize> Blocks<D> {
                         2 * m + of_axis(a)
                     });
                     let cut = |a: usize, b: usize| b * self.cells[a] / self.count[a];
-                    work(&BlockOfCells {
+                    let block = BlockOfCells {
                         cells: self.cells,
                         from: std::array::from_fn(|a| cut(a, at[a])),
                         to: std::array::from_fn(|a| cut(a, at[a] + 1)),
-                    });
+                    };
+                    let number = (0..D).rev().fold(0, |n, a| n * self.count[a] + at[a]);
+                    work(number, &block);
                 });
         }
     }

@@ -21,15 +21,15 @@ mod sums;
 mod workspace;
 
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
-pub use pairs::{PairPass, Pairs};
+pub use pairs::{PairPass, Pairs, Totals};
 pub use single::Single;
 pub use sums::{SumColumns, Sums, Tally, Uses};
 
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
-use crate::particles::{Column, for_ranges};
+use crate::particles::{Column, Shared, for_ranges};
 use crate::simd::{Lanes, Real, dispatch};
-use colours::Blocks;
+use colours::{BlockOfCells, Blocks};
 use pairs::Block;
 use slab::Slab;
 use std::ops::Range;
@@ -37,7 +37,7 @@ use std::sync::{Mutex, PoisonError};
 use workspace::Workspace;
 
 /// Fields that a source can carry (`slot`).
-pub const SLOTS: usize = 9;
+pub const SLOTS: usize = 10;
 /// Particles that should share one selection of candidates: a larger cluster selects more that not all of it need, a
 /// smaller one selects too often.
 const CLUSTER: f64 = 6.0;
@@ -136,6 +136,8 @@ pub struct Sweeper<R> {
     smoothing_length: f64,
     parts_per_cluster: usize,
     per_cell: f64,
+    /// By block.
+    totals: Mutex<Vec<Totals>>,
 }
 
 /// One pass from a set to another.
@@ -166,6 +168,7 @@ impl<R: Real> Sweeper<R> {
             smoothing_length,
             parts_per_cluster,
             per_cell,
+            totals: Mutex::default(),
         }
     }
 
@@ -200,22 +203,8 @@ impl<R: Real> Sweeper<R> {
                 }
             }
         });
-        Blocks::new(pairs.grid, self.per_cell, n).for_each(|cells| {
-            let empty =
-                |row: Range<usize>| pairs.fluid.cells.particles(row.start, row.end).is_empty();
-            if (0..cells.rows()).all(|k| empty(cells.row(k))) {
-                return;
-            }
-            let mut workspace = self.workspace();
-            dispatch(Block {
-                pairs,
-                h: self.smoothing_length,
-                cells,
-                workspace: &mut *workspace,
-                columns,
-                kernel,
-                parts_per_cluster: self.parts_per_cluster,
-            });
+        Blocks::new(pairs.grid, self.per_cell, n).for_each(|_, cells| {
+            self.block(kernel, pairs, cells, columns);
         });
         each(&|range| {
             for i in range {
@@ -235,6 +224,56 @@ impl<R: Real> Sweeper<R> {
                 }
             }
         });
+    }
+
+    /// Sums over all pairs, by a pass that [collects](PairPass::collect) them.
+    pub fn total<P: PairPass<R, D>, const D: usize>(
+        &self,
+        kernel: KernelName,
+        pairs: &Pairs<R, P, D>,
+    ) -> Totals {
+        let n = pairs.fluid.position[0].len();
+        let blocks = Blocks::new(pairs.grid, self.per_cell, n);
+        let mut parts = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
+        parts.resize(blocks.count(), Totals::default());
+        let each = Shared::new(&mut parts);
+        let nothing = SumColumns::default();
+        blocks.for_each(|k, cells| {
+            let totals = self.block(kernel, pairs, cells, &nothing);
+            // SAFETY: every block has a place of its own.
+            unsafe { each.write(k, totals) };
+        });
+        parts.iter().fold(Totals::default(), |mut sum, part| {
+            for (s, p) in sum.iter_mut().zip(part) {
+                *s += p;
+            }
+            sum
+        })
+    }
+
+    /// The work of a block of cells, none if it has no particles.
+    fn block<P: PairPass<R, D>, const D: usize>(
+        &self,
+        kernel: KernelName,
+        pairs: &Pairs<R, P, D>,
+        cells: &BlockOfCells<D>,
+        columns: &SumColumns<R>,
+    ) -> Totals {
+        let at = &pairs.fluid.cells;
+        let empty = |row: Range<usize>| at.particles(row.start, row.end).is_empty();
+        if (0..cells.rows()).all(|k| empty(cells.row(k))) {
+            return Totals::default();
+        }
+        let mut workspace = self.workspace();
+        dispatch(Block {
+            pairs,
+            h: self.smoothing_length,
+            cells,
+            workspace: &mut *workspace,
+            columns,
+            kernel,
+            parts_per_cluster: self.parts_per_cluster,
+        })
     }
 
     /// The buffers of this thread.

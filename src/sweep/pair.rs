@@ -16,6 +16,8 @@ pub mod slot {
     pub const VELOCITY: usize = 3;
     /// First component of the gradient of the condensation.
     pub const GRADIENT: usize = 6;
+    /// Rate of density.
+    pub const RATE: usize = 9;
 }
 
 /// Geometry of one particle and a vector of neighbours.
@@ -72,6 +74,11 @@ macro_rules! fields {
         #[inline(always)]
         pub fn velocity(&self) -> [L; D] {
             std::array::from_fn(|a| self.$field(slot::VELOCITY + a))
+        }
+        /// Rate of density in kg/m³/s.
+        #[inline(always)]
+        pub fn rate(&self) -> L {
+            self.$field(slot::RATE)
         }
         /// Renormalised gradient of the condensation in 1/m.
         #[inline(always)]

@@ -40,7 +40,16 @@ pub trait PairPass<R: Real, const D: usize>: Sync {
 
     /// Makes of a particle's sums what shall stand in their columns.
     fn finish(&self, own: &Own<R, D>, sums: &mut Sums<R, D>);
+
+    /// Whether it makes totals over all pairs of what it sums for the one particle of each ([`Tally::account`]).
+    const COLLECTS: bool = false;
+
+    /// Adds to the totals what was summed for a particle.
+    fn collect(&self, _own: &Own<R, D>, _sums: &Sums<R, D>, _totals: &mut Totals) {}
 }
+
+/// Totals over all pairs.
+pub type Totals = [f64; 6];
 
 /// One pass over pairs.
 pub struct Pairs<'a, R, P, const D: usize> {
@@ -73,7 +82,14 @@ struct Both<'a, L: Lanes, P, const D: usize> {
     own: &'a Own<L::Real, D>,
     sums: &'a mut Sums<L, D>,
     reactions: &'a mut Reactions<L::Real>,
+    /// Particles at the front that are of its own cluster, with whom it meets twice.
+    cluster: usize,
+    /// As many halves, then ones, as there are lanes.
+    shares: &'a [L::Real; 2 * LANES],
 }
+
+/// Most lanes that there are.
+const LANES: usize = 16;
 
 impl<L: Lanes, P: PairPass<L::Real, D>, const D: usize> Visit<L, D> for Both<'_, L, P, D> {
     #[inline(always)]
@@ -83,6 +99,11 @@ impl<L: Lanes, P: PairPass<L::Real, D>, const D: usize> Visit<L, D> for Both<'_,
         // SAFETY: the reactions are cleared for all of the buffer.
         let mut back = unsafe { self.reactions.load::<L, D>(self.used, k) };
         let mut tally = Tally::new(self.sums, &mut back, own.volume(), other.volume());
+        if P::COLLECTS {
+            let twice = self.cluster.saturating_sub(k).min(LANES);
+            // SAFETY: a vector fits behind at most LANES numbers.
+            tally.share(unsafe { L::load(self.shares.as_ptr().add(LANES - twice)) });
+        }
         self.pass.fluid(pair, &own, other, &mut tally);
         tally.close(
             self.uses,
@@ -121,10 +142,10 @@ impl<L: Lanes, P: PairPass<L::Real, D>, const D: usize> Visit<L, D> for Walls<'_
 }
 
 impl<R: Real, P: PairPass<R, D>, const D: usize> Task<R> for Block<'_, R, P, D> {
-    type Output = ();
+    type Output = Totals;
 
     #[inline(always)]
-    fn run<L: Lanes<Real = R>>(self) {
+    fn run<L: Lanes<Real = R>>(self) -> Totals {
         let Pairs {
             grid,
             fluid,
@@ -136,6 +157,8 @@ impl<R: Real, P: PairPass<R, D>, const D: usize> Task<R> for Block<'_, R, P, D> 
         let geometry = Geometry::<L, D>::new(self.kernel, self.h);
         let reach = R::from_f64(self.h * self.kernel.support() * (1.0 + 1e-5));
         let edge = grid.edge();
+        let mut totals = Totals::default();
+        let shares = std::array::from_fn(|k| R::from_f64(if k < LANES { 0.5 } else { 1.0 }));
         let Workspace {
             candidates: [around, walls],
             selected: [near, near_walls],
@@ -199,6 +222,8 @@ impl<R: Real, P: PairPass<R, D>, const D: usize> Task<R> for Block<'_, R, P, D> 
                                 own: &own,
                                 sums: &mut sums,
                                 reactions: near_sums,
+                                cluster: to - from,
+                                shares: &shares,
                             },
                         );
                         if wall.is_some() {
@@ -214,6 +239,7 @@ impl<R: Real, P: PairPass<R, D>, const D: usize> Task<R> for Block<'_, R, P, D> 
                             );
                         }
                         let mut total = sums.total();
+                        pass.collect(&own, &total, &mut totals);
                         for c in 0..SUMS {
                             if used[c] {
                                 // SAFETY: no other block of this colour adds to this particle.
@@ -228,6 +254,7 @@ impl<R: Real, P: PairPass<R, D>, const D: usize> Task<R> for Block<'_, R, P, D> 
             }
             hand_out::<L, R, D>(around_sums, used, fluid, &runs, columns);
         }
+        totals
     }
 }
 

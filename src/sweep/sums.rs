@@ -1,6 +1,7 @@
 //! What is summed over the neighbours of a particle, and how a pair adds to both of its particles.
 
-use super::pair::Pair;
+use super::pair::{Other, Pair, Splat};
+use crate::effects::PairTerm;
 use crate::particles::Shared;
 use crate::simd::{Lanes, Real};
 
@@ -111,6 +112,7 @@ pub struct Tally<'a, L, const D: usize> {
     compression: L,
     exchange: L,
     source: L,
+    share: L,
 }
 
 impl<'a, L: Lanes, const D: usize> Tally<'a, L, D> {
@@ -132,7 +134,39 @@ impl<'a, L: Lanes, const D: usize> Tally<'a, L, D> {
             compression: none,
             exchange: none,
             source: none,
+            share: L::constant(1.0),
         }
+    }
+
+    /// Which part of a pair this visit stands for.
+    #[inline(always)]
+    pub(super) fn share(&mut self, share: L) {
+        self.share = share;
+    }
+
+    /// `c` per volume of both, into component `k` of the matrix of the one alone: for totals over pairs.
+    #[inline(always)]
+    pub fn account(&mut self, k: usize, c: L) {
+        let weight = self.share * self.other_volume;
+        self.own.moment[k] = weight.mul_add(c, self.own.moment[k]);
+    }
+
+    /// What `term` gives both particles of a pair, per volume of the other: the force density on the one, and the rates
+    /// of density of the one and of the other.
+    #[inline(always)]
+    pub fn of<T: PairTerm<L::Real, D>>(
+        term: &T,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+    ) -> ([L; D], L, L) {
+        let one = L::constant(1.0);
+        let (mut ours, mut theirs) = (Sums::zero(), Sums::zero());
+        let mut tally = Tally::new(&mut ours, &mut theirs, one, one);
+        term.add(pair, own, other, &mut tally);
+        let densities = [one + own.condensation(), one + other.condensation()];
+        tally.close(term.uses(), pair, densities[0], densities[1]);
+        (ours.vector, ours.scalar, theirs.scalar)
     }
 
     /// A force density `c r_ij` on the one and its opposite on the other, into the vector.
