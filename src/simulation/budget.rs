@@ -19,7 +19,7 @@ use crate::walls::Slip;
 const EVERY: u64 = 32;
 
 /// Acceleration, in units of `c0²/Δp`, that only contacts and impacts reach.
-const COLLISION: f64 = 0.03;
+const COLLISION: f64 = 0.01;
 
 /// Number of entries: those of pairs, and the shift.
 pub(super) const ENTRIES: usize = POWERS.len() + 1;
