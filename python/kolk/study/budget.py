@@ -154,4 +154,4 @@ def _coarsest(scene: Scene) -> float:
     spacing = float(min(high - low)) / FEWEST_ACROSS
     while spacing > scene.spacing and not fits(scene, spacing):
         spacing /= 1.2
-    return max(spacing, scene.spacing) if spacing < scene.spacing else spacing
+    return max(spacing, scene.spacing)
