@@ -17,6 +17,9 @@ pub(super) struct Geometry<L, const D: usize> {
 
 /// What is done with each vector of pairs. `vector` must be `#[inline(always)]`.
 pub(super) trait Visit<L: Lanes, const D: usize> {
+    /// Whether few vectors are visited: not worth code of their own for the default kernel.
+    const RARE: bool = false;
+
     /// With the vector of neighbours that starts at place `k` of the buffer.
     fn vector(&mut self, pair: &Pair<L, D>, other: &Other<L, D>, k: usize);
 }
@@ -42,7 +45,7 @@ impl<L: Lanes, const D: usize> Geometry<L, D> {
         // change, for the compiler would otherwise make a copy of the loop per kernel, and of every sweep five.
         let step = L::N;
         match self.kernel {
-            KernelName::WendlandC2 => {
+            KernelName::WendlandC2 if !V::RARE => {
                 for k in (0..others.len()).step_by(step) {
                     self.vector(KernelName::WendlandC2, x, others, k, visit);
                 }

@@ -92,6 +92,8 @@ struct Both<'a, L: Lanes, P, const D: usize> {
 const LANES: usize = 16;
 
 impl<L: Lanes, P: PairPass<L::Real, D>, const D: usize> Visit<L, D> for Both<'_, L, P, D> {
+    const RARE: bool = P::COLLECTS;
+
     #[inline(always)]
     fn vector(&mut self, pair: &Pair<L, D>, other: &Other<L, D>, k: usize) {
         let own = Splat(self.own);
@@ -125,6 +127,8 @@ struct Walls<'a, L: Lanes, P, const D: usize> {
 }
 
 impl<L: Lanes, P: PairPass<L::Real, D>, const D: usize> Visit<L, D> for Walls<'_, L, P, D> {
+    const RARE: bool = true;
+
     #[inline(always)]
     fn vector(&mut self, pair: &Pair<L, D>, other: &Other<L, D>, _: usize) {
         let own = Splat(self.own);
