@@ -6,6 +6,7 @@
 //! where the distance test rejects it: it costs nothing and breaks nothing. On a periodic axis the same wrap, with the
 //! period added, gives the images.
 
+use std::mem::MaybeUninit;
 use std::ops::Range;
 
 /// Cells of a block of space, repeated over all of it.
@@ -31,7 +32,7 @@ pub struct Run<const D: usize> {
 
 /// The runs of cells around a cell.
 pub struct Runs<const D: usize> {
-    runs: [Run<D>; 27],
+    runs: [MaybeUninit<Run<D>>; 27],
     count: usize,
 }
 
@@ -39,18 +40,14 @@ impl<const D: usize> Runs<D> {
     #[inline(always)]
     fn none() -> Self {
         Runs {
-            runs: [Run {
-                first: 0,
-                end: 0,
-                shift: [0.0; D],
-            }; 27],
+            runs: [const { MaybeUninit::uninit() }; 27],
             count: 0,
         }
     }
 
     #[inline(always)]
     fn add(&mut self, first: usize, end: usize, shift: [f64; D]) {
-        self.runs[self.count] = Run { first, end, shift };
+        self.runs[self.count].write(Run { first, end, shift });
         self.count += 1;
     }
 }
@@ -59,7 +56,8 @@ impl<const D: usize> std::ops::Deref for Runs<D> {
     type Target = [Run<D>];
     #[inline(always)]
     fn deref(&self) -> &[Run<D>] {
-        &self.runs[..self.count]
+        // SAFETY: the first `count` are written.
+        unsafe { std::slice::from_raw_parts(self.runs.as_ptr().cast(), self.count) }
     }
 }
 

@@ -99,18 +99,12 @@ impl<R: Real> Buffer<R> {
         }
     }
 
-    /// Puts particles out of reach behind the last, so that the last vector can be read whole.
+    /// Puts particles out of reach behind the last, so that the last vector can be read whole. Their fields are numbers
+    /// that were there before, and count for nothing.
     #[inline(always)]
-    fn close<L: Lanes<Real = R>, const D: usize>(&mut self, slots: &[(usize, *const R)]) {
+    fn close<L: Lanes<Real = R>>(&mut self) {
         // SAFETY: `reserve` keeps PAD numbers of room behind the last.
-        unsafe {
-            for a in 0..D {
-                L::constant(FAR).store(self.column_mut(a).add(self.len));
-            }
-            for &(slot, _) in slots {
-                L::zero().store(self.column_mut(D + slot).add(self.len));
-            }
-        }
+        unsafe { L::constant(FAR).store(self.column_mut(0).add(self.len)) };
     }
 
     /// All particles of `source` in the cells of `runs`, relative to `frame`.
@@ -152,7 +146,7 @@ impl<R: Real> Buffer<R> {
             self.len += range.len();
         }
         self.reserve::<D>(0);
-        self.close::<L, D>(source.fields());
+        self.close::<L>();
     }
 
     /// Position and fields of a particle.
@@ -245,7 +239,7 @@ impl<R: Real> Buffer<R> {
             }
             self.len += hit.bits.count_ones() as usize;
         }
-        self.close::<L, D>(source.fields());
+        self.close::<L>();
         found
     }
 }

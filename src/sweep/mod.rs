@@ -207,6 +207,8 @@ impl<R: Real> Sweeper<R> {
             self.block(kernel, pairs, cells, columns);
         });
         each(&|range| {
+            // Known here again, for the compiler to see which are used.
+            let used = pairs.pass.uses().columns::<D>();
             for i in range {
                 let mut sums = Sums::zero();
                 for c in 0..used.len() {
