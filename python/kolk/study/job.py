@@ -86,12 +86,17 @@ def package_digest() -> str:
     digest = hashlib.sha256(version().encode())
     package = Path(__file__).parents[1]
     sources = sorted(package.glob("*.py"))
-    for part in RESULT_PARTS:
-        sources += sorted((package / part).glob("**/*.py"))
+    for folder in RESULT_PARTS:
+        sources += sorted((package / folder).glob("**/*.py"))
     if _core.__file__ is not None:
         sources.append(Path(_core.__file__))
     for source in sources:
-        digest.update(hashlib.sha256(source.read_bytes()).digest())
+        # In pieces: the engine may be large, and the peak of memory is measured.
+        with source.open("rb") as file:
+            content = hashlib.sha256()
+            while piece := file.read(1 << 16):
+                content.update(piece)
+        digest.update(content.digest())
     return digest.hexdigest()
 
 
