@@ -184,6 +184,26 @@ def test_an_outline_is_the_polygon_that_it_draws(tmp_path, points):
     np.testing.assert_allclose(vessel.bounds(0.1), [[-0.1, -0.1], [1.1, 1.1]])
 
 
+def test_layers_follow_an_outline_half_a_spacing_behind_it(tmp_path):
+    around = np.linspace(0.0, 2.0 * np.pi, 200, endpoint=False)
+    ring = np.stack([np.cos(around), np.sin(around)], axis=1)
+    lines = "\n".join(f"{x} {y}" for x, y in ring)
+    (tmp_path / "a.csv").write_text(lines, encoding="utf-8")
+    for solid, side in (("inside", -1.0), ("outside", 1.0)):
+        outline = Outline(file=str(tmp_path / "a.csv"), solid=solid)
+        found = outline.layers(0.05, 3)
+        assert found is not None
+        radius = np.linalg.norm(found, axis=1)
+        layer = np.round((radius - 1.0) / (side * 0.05) - 0.5).astype(int)
+        assert set(layer) == {0, 1, 2}
+        np.testing.assert_allclose(radius, 1.0 + side * 0.05 * (layer + 0.5), atol=3e-4)
+        for k in range(3):
+            # As far apart along the layer as the layers are.
+            expected = 2.0 * np.pi * (1.0 + side * 0.05 * (k + 0.5)) / 0.05
+            assert np.sum(layer == k) == pytest.approx(expected, abs=1.0)
+        np.testing.assert_array_less(outline.distance(found), 0.0)
+
+
 def test_an_outline_is_no_shape_in_3d(tmp_path):
     (tmp_path / "a.csv").write_text(SQUARE, encoding="utf-8")
     with pytest.raises(SceneError, match=r"wall.w.shape.outline: is a shape in 2D"):

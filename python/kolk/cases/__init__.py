@@ -1,6 +1,7 @@
 """Built-in scenes, each with what it shows, its source, its reference and its cost.
 
-One file a case: ``dam_break.py`` is the case ``dam-break`` and defines ``case``. A finer or
+One file a case: ``dam_break.py`` is the case ``dam-break`` and defines ``case``; what a case reads
+stands in a folder. A finer or
 coarser one is ``case.scene.replace(spacing=...)``.
 """
 
@@ -66,7 +67,8 @@ class Case:
 
 def names() -> list[str]:
     """Names of all built-in scenes, sorted."""
-    return sorted(m.name.replace("_", "-") for m in pkgutil.iter_modules(__path__))
+    found = (m for m in pkgutil.iter_modules(__path__) if not m.ispkg)
+    return sorted(m.name.replace("_", "-") for m in found)
 
 
 @cache

@@ -149,6 +149,10 @@ def _wall_part(scene: Scene, wall: Wall) -> _Part:
         return _Part(wall.particles.position.copy(), scene.spacing**scene.dimension, cell)
     assert wall.shape is not None
     shape = wall.shape.shape
+    along = shape.layers(scene.spacing, scene.wall_layers)
+    if along is not None and len(along):
+        cell = np.full(scene.dimension, scene.spacing)
+        return _Part(along, scene.spacing**scene.dimension, cell)
     points, steps = lattice(shape, scene.spacing, scene.wall_layers)
     distance = shape.distance(points)
     keep = distance < 0.0

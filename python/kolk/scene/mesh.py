@@ -18,7 +18,7 @@ import numpy.typing as npt
 from pydantic import Field, model_validator
 
 from . import distance
-from .base import Positive, Text, Vector
+from .base import Positive, Real, Text, Vector
 from .shapes import Axis, Bounds, Shape, fitted, problem
 
 FloatArray = npt.NDArray[np.float64]
@@ -39,6 +39,7 @@ class FromFile(Shape):
     file: Text = Field(description="path, relative to the scene file")
     scale: Positive = Field(default=1.0, description="m per unit of the file: 0.001 for mm")
     translate: Vector | None = Field(default=None, description="after scaling, m")
+    offset: Real = Field(default=0.0, description="m by which the surface is moved outwards")
     solid: Literal["inside", "outside"] = Field(
         default="inside", description='"outside": a vessel, whose inside the surface encloses'
     )
@@ -59,22 +60,23 @@ class FromFile(Shape):
         return self.solid == "outside"
 
     def distance(self, points: FloatArray) -> FloatArray:
-        signed = self._signed(np.ascontiguousarray(points, np.float64))
+        signed = self._signed(np.ascontiguousarray(points, np.float64)) - self.offset
         return -signed if self.hollow() else signed
 
     def bounds(self, thickness: float = 0.0) -> Bounds:
         low, high = self._corners()
-        beyond = thickness if self.hollow() else 0.0
+        beyond = self.offset + (thickness if self.hollow() else 0.0)
         return low - beyond, high + beyond
 
     def axes(self, spacing: float, layers: int = 0) -> list[Axis]:
         """Fitted between the bounds of the surface, and carried on beyond them for a vessel."""
         beyond = layers if self.hollow() else 0
         axes = []
-        for low, high in zip(*self._corners(), strict=True):
-            inner = fitted(low, high, spacing)
+        low, high = self._corners()
+        for a, b in zip(low - self.offset, high + self.offset, strict=True):
+            inner = fitted(a, b, spacing)
             steps = np.arange(-beyond, len(inner.at) + beyond) + 0.5
-            axes.append(Axis(np.asarray(low + inner.step * steps, np.float64), inner.step))
+            axes.append(Axis(np.asarray(a + inner.step * steps, np.float64), inner.step))
         return axes
 
 
@@ -139,6 +141,24 @@ class Outline(FromFile):
         """Corners (k, 2) of each closed polyline in m."""
         path = _existing(self.file, (), "")
         return [self._placed(ring) for ring in _rings(str(path), path.stat().st_mtime_ns)]
+
+    def layers(self, spacing: float, count: int) -> FloatArray | None:
+        """Along the polylines, as far apart as divides their length: no steps of a lattice."""
+        import shapely
+
+        solid = functools.reduce(
+            shapely.symmetric_difference, [shapely.Polygon(ring) for ring in self.rings()]
+        )
+        side = -1.0 if self.solid == "inside" else 1.0
+        found = []
+        for layer in range(count):
+            depth = self.offset + side * (layer + 0.5) * spacing
+            edge = shapely.buffer(solid, depth, join_style="mitre").boundary
+            for line in shapely.get_parts(edge):
+                number = max(1, round(line.length / spacing))
+                at = line.length * (np.arange(number) + 0.5) / number
+                found.append(shapely.get_coordinates(shapely.line_interpolate_point(line, at)))
+        return np.concatenate(found) if found else None
 
     def _signed(self, points: FloatArray) -> FloatArray:
         signed = np.stack([distance.polygon(points, ring) for ring in self.rings()])

@@ -51,6 +51,11 @@ class Shape(Model):
         low, high = self.bounds()
         return float(np.prod(np.maximum(high - low, 0.0)))
 
+    def layers(self, spacing: float, count: int) -> FloatArray | None:
+        """Particles (n, D) of a wall in ``count`` layers along the surface, the first half a
+        spacing behind it; None for those of the lattice."""
+        return None
+
     def hollow(self) -> bool:
         """Whether the solid is what lies outside of a closed space, as a vessel's wall does."""
         return False
