@@ -5,7 +5,7 @@ mod common;
 
 use common::{Noise, Scene, advance, all_finite, by_id, integers, reals, tank};
 use kolk::error::{Error, Instability};
-use kolk::simulation::{Entries, Entry, Precision, Simulation, Trouble};
+use kolk::simulation::{Entries, Entry, Precision, Simulation};
 use serde_json::json;
 use std::time::Duration;
 
