@@ -159,6 +159,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
         // What was read by pairs last: shown by probes until the next step.
         put("volume", widen(&fluid.volume));
         put("pressure", widen(&fluid.pressure));
+        // The last shift: the next audit of the energy reads it.
+        for (a, column) in fluid.shift.iter().flatten().enumerate() {
+            put(&format!("shift_{a}"), widen(column));
+        }
         if let Some(wall) = &self.wall {
             put("wall_pressure", widen(&wall.pressure));
             put("wall_volume", widen(&wall.volume));
@@ -243,6 +247,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         from.table("cells", &mut fluid.cells.offsets, n)?;
         from.column("volume", &mut fluid.volume)?;
         from.column("pressure", &mut fluid.pressure)?;
+        for (a, column) in fluid.shift.iter_mut().flatten().enumerate() {
+            from.column(&format!("shift_{a}"), column)?;
+        }
         if !fluid.cells.offsets.is_sorted() {
             return Err(Error::Input(
                 "checkpoint: cells are not in order; the file is damaged".to_owned(),

@@ -91,6 +91,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
             );
             look(w, 6, "volume", owner, fluid.volume[i].to_f64());
             look(w, 7, "pressure", owner, fluid.pressure[i].to_f64());
+            for column in fluid.shift.iter().flatten() {
+                look(w, 8, "shift", owner, column[i].to_f64());
+            }
         }
         worst
     }
