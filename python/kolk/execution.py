@@ -10,7 +10,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from kolk.errors import InstabilityError, KolkError, RunError
+from kolk.errors import InstabilityError, RunError
 from kolk.interrupts import Interrupts
 from kolk.output.atomic import storage_error, write_json
 from kolk.output.checkpoint import Checkpoint
@@ -127,7 +127,7 @@ class Execution:
             self.outcome = "done"
         except InstabilityError as error:
             self._end("unstable", str(error))
-            self._last_frame()
+            self._keep_last_state(error)
             raise
         except KeyboardInterrupt:
             if not begun:
@@ -192,8 +192,9 @@ class Execution:
         if checkpoint.scene != self.recorder.fingerprint:
             raise RunError(
                 f"the run in {self.folder} is of another scene, precision or set of probes than "
-                "this one (only `until`, the frames' interval and the pictures may change): "
-                "resume it with the same settings, or run into another folder (--out)"
+                "this one (only until, the frames' interval, the pictures, and numerics' courant, "
+                "time_step and guard may change): resume it with the same settings, or run into "
+                "another folder (--out)"
             )
         book = checkpoint.book
         simulation = self.simulation
@@ -288,12 +289,23 @@ class Execution:
     def _end(self, outcome: str, reason: str) -> None:
         self.outcome, self.reason = outcome, reason
 
-    def _last_frame(self) -> None:
-        """The state at which a run became unstable, to look at; best effort."""
-        try:
-            self.recorder.frame()
-        except KolkError as error:
-            self.notes.append(f"the last state could not be written: {error}")
+    def _keep_last_state(self, error: InstabilityError) -> None:
+        """Saves the state to which the guard went back when the run became unstable."""
+        if self.simulation.retries["kept"] is None:
+            kept = "The guard is off: --resume goes on from the last checkpoint"
+        else:
+            try:
+                self.recorder.sample()
+                if self.simulation.time > self.recorder.written:
+                    self.recorder.frame()
+                self._checkpoint()
+                kept = f"The last good state, at t = {self.simulation.time:g} s, is saved: --resume"
+                kept += " goes on from it"
+            except RunError as failure:
+                kept = f"The last good state could not be saved ({failure}): --resume goes on from"
+                kept += " the last checkpoint"
+        also = "courant, time_step and guard of numerics may be changed for it"
+        error.args = (f"{error} {kept} in {self.folder}; {also}.",)
 
     def _seconds(self) -> float:
         return self._former_seconds + clock.perf_counter() - self.watch.begun

@@ -190,7 +190,7 @@ class Simulation:
 
     @property
     def limit(self) -> str:
-        """What set the last time step: acoustic, viscous, force, fixed or output."""
+        """What set the last time step: acoustic, viscous, force, fixed, output or guard."""
         return str(self._engine.limit)
 
     @property
@@ -272,6 +272,18 @@ class Simulation:
     def steps_by_limit(self) -> dict[str, int]:
         """How many steps each criterion has set."""
         return {str(k): int(v) for k, v in self._engine.steps_by_limit().items()}
+
+    @property
+    def retries(self) -> dict[str, Any]:
+        """What the guard did (see `numerics.guard`).
+
+        retries: how often each trouble made it go back to a state kept in memory and on with half
+        the time step; passed: how often a trouble that leaves the state sound was let pass, since
+        a shorter step did not help; undone: steps taken back; kept: time (s) of the state that is
+        kept now, None without guard. `step_count` and `time` go back as well; a time that
+        `advance_to` has reached is never taken back.
+        """
+        return dict(self._engine.retries())
 
     @property
     def effects(self) -> list[dict[str, Any]]:

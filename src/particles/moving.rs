@@ -126,4 +126,18 @@ impl<R: Real, const D: usize> Wall<R, D> {
             self.sort_again(grid);
         }
     }
+
+    /// Puts walls that move to their places at the start, wherever they are; the next [`Self::move_to`] sorts them.
+    pub fn bring_home(&mut self) {
+        let Some(moving) = &mut self.moving else {
+            return;
+        };
+        for (i, id) in self.id.iter().enumerate() {
+            for a in 0..D {
+                self.position[a][i] = moving.home[*id as usize][a];
+                self.pair_velocity[a][i] = R::from_f64(0.0);
+            }
+        }
+        moving.travelled = f64::INFINITY;
+    }
 }

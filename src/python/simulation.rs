@@ -2,7 +2,7 @@
 
 use crate::error::Error;
 use crate::particles::Given;
-use crate::simulation::{BodyInput, Config, Entry, Precision, Progress, Simulation};
+use crate::simulation::{BodyInput, Config, Entry, Precision, Progress, Simulation, Trouble};
 use crate::step::Limit;
 use numpy::{
     PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
@@ -245,6 +245,7 @@ impl PySimulation {
         dict.set_item("pressure_min", d.pressure_min)?;
         dict.set_item("pressure_max", d.pressure_max)?;
         dict.set_item("closest_pair", d.closest_pair)?;
+        dict.set_item("crowded", d.crowded)?;
         let dissipated = PyDict::new(py);
         for (name, energy) in d.dissipated {
             dissipated.set_item(name, energy)?;
@@ -269,6 +270,23 @@ impl PySimulation {
         for (limit, steps) in Limit::ALL.iter().zip(self.0.status().steps_by_limit) {
             dict.set_item(limit.name(), steps)?;
         }
+        Ok(dict)
+    }
+
+    /// What the guard did: how often each trouble made it go back or was let pass, and the steps taken back,
+    /// and the time of the state kept.
+    fn retries<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let record = self.0.status().retries;
+        let (retries, passed) = (PyDict::new(py), PyDict::new(py));
+        for trouble in Trouble::ALL {
+            retries.set_item(trouble.name(), record.retries[trouble as usize])?;
+            passed.set_item(trouble.name(), record.passed[trouble as usize])?;
+        }
+        let dict = PyDict::new(py);
+        dict.set_item("retries", retries)?;
+        dict.set_item("passed", passed)?;
+        dict.set_item("undone", record.undone)?;
+        dict.set_item("kept", self.0.status().kept)?;
         Ok(dict)
     }
 

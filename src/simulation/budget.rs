@@ -25,7 +25,7 @@ const COLLISION: f64 = 0.01;
 pub(super) const ENTRIES: usize = POWERS.len() + 1;
 
 /// Energy that effects have taken so far.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Budget {
     /// Taken up to `time`, in J.
     pub(super) taken: [f64; ENTRIES],

@@ -69,6 +69,9 @@ pub struct Config {
     /// Fixed time step in s.
     #[serde(default)]
     pub time_step: Option<f64>,
+    /// Whether a state is kept in memory to go back to on trouble; without, trouble ends the run.
+    #[serde(default = "yes")]
+    pub guard: bool,
 }
 
 fn seven() -> f64 {

@@ -32,10 +32,12 @@ pub struct Diagnostics {
     pub pressure_min: f64,
     /// Largest pressure.
     pub pressure_max: f64,
-    /// Distance of the closest pair of fluid particles in initial spacings; infinite if no two are in reach.
+    /// Distance of the closest pair of fluid particles in initial spacings; infinite if no two are near.
     pub closest_pair: f64,
     /// Energy that effects have taken since the start, in J.
     pub dissipated: Vec<(&'static str, f64)>,
+    /// Particles with another nearer than half a spacing.
+    pub crowded: u64,
 }
 
 impl<R: Real, const D: usize> Solver<R, D> {
@@ -76,6 +78,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 e
             },
         );
+        let crowding = self.crowding();
         let speed = extremes.2.sqrt();
         let (low, high) = if fluid.is_empty() {
             let rest = self.config.reference_density;
@@ -100,53 +103,13 @@ impl<R: Real, const D: usize> Solver<R, D> {
             mach: speed / self.config.sound_speed,
             pressure_min: eos.pressure_at(low),
             pressure_max: eos.pressure_at(high),
-            closest_pair: self.closest_pair(),
+            closest_pair: crowding.closest,
+            crowded: crowding.crowded,
             dissipated: self
                 .budget
                 .until(self.time)
                 .filter(|&(_, energy)| energy != 0.0)
                 .collect(),
         }
-    }
-
-    /// Distance of the closest pair of fluid particles in spacings.
-    fn closest_pair(&self) -> f64 {
-        let fluid = &self.fluid;
-        if !self.primed {
-            // Not sorted yet: there are no cells to search.
-            return f64::INFINITY;
-        }
-        let cells = &fluid.cells;
-        let nearest = for_ranges(
-            cells.count(),
-            || f64::INFINITY,
-            f64::min,
-            |range| {
-                let mut nearest = f64::INFINITY;
-                for cell in range {
-                    let own = cells.particles(cell, cell + 1);
-                    if own.is_empty() {
-                        continue;
-                    }
-                    for run in self.grid.around(cell).iter() {
-                        for j in cells.particles(run.first, run.end) {
-                            let y: [f64; D] =
-                                std::array::from_fn(|a| fluid.position[a][j] + run.shift[a]);
-                            // Each pair once: the particle with the lower index looks.
-                            for i in own.start..own.end.min(j) {
-                                let mut r2 = 0.0;
-                                for a in 0..D {
-                                    let d = fluid.position[a][i] - y[a];
-                                    r2 += d * d;
-                                }
-                                nearest = nearest.min(r2);
-                            }
-                        }
-                    }
-                }
-                nearest
-            },
-        );
-        nearest.sqrt() / self.config.spacing
     }
 }

@@ -3,6 +3,7 @@
 use super::checkpoint::Entries;
 use super::config::Config;
 use super::diagnostics::Diagnostics;
+use super::retry::Retries;
 use super::sample::Sample;
 use super::solver::{Body, Progress, Solver};
 use crate::error::{Error, Result};
@@ -112,6 +113,10 @@ pub struct Status {
     pub steps_by_limit: [u64; Limit::ALL.len()],
     /// Largest Mach number so far.
     pub mach_max: f64,
+    /// What the guard did.
+    pub retries: Retries,
+    /// Time of the state that it keeps, in s.
+    pub kept: Option<f64>,
     /// Fluid particles.
     pub fluid: usize,
     /// Wall particles.

@@ -60,6 +60,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
             limit: self.limit,
             steps_by_limit: self.steps_by_limit,
             mach_max: self.mach_max,
+            retries: self.guard.memory.record,
+            kept: self.guard.snapshot.as_ref().map(|s| s.scalars.time),
             fluid: self.fluid.len(),
             wall: self.wall.as_ref().map_or(0, |w| w.len()),
         }
@@ -71,6 +73,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             groups.push(("walls", wall.bytes()));
         }
         groups.push(("buffers", self.sweeper.bytes()));
+        groups.push(("guard", self.guard.bytes()));
         groups
     }
 

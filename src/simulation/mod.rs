@@ -4,12 +4,18 @@ mod assembly;
 mod budget;
 mod checkpoint;
 mod config;
+mod crowding;
+mod diagnosis;
 mod diagnostics;
 mod engine;
+mod foreign;
 mod gravity;
+mod guard;
 mod inspect;
 mod reaction;
+mod retry;
 mod sample;
+mod snapshot;
 mod solver;
 mod timers;
 
@@ -18,8 +24,10 @@ pub use config::{
     ArtificialViscosityConfig, Config, DensityDiffusionConfig, DiffusionForm, EosName,
     GravityConfig, LaminarViscosityConfig, ShiftingConfig, ShiftingForm, ViscosityForm, WallConfig,
 };
+pub use crowding::Crowding;
 pub use diagnostics::Diagnostics;
 pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulation, Status};
+pub use retry::{Retries, Trouble};
 pub use sample::Sample;
 pub use solver::{Body, Progress, Solver};
 pub use timers::{PHASES, Phase, Timers};

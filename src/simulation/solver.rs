@@ -3,9 +3,11 @@
 use super::budget::Budget;
 use super::config::{Config, ViscosityForm};
 use super::gravity::Gravity;
+use super::guard::Guard;
+use super::retry::Trouble;
 use super::timers::{Phase, Timers};
 use crate::effects::fastest_decay;
-use crate::error::{Error, Instability, Result};
+use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
 use crate::particles::{Fluid, Given, Moving, Wall};
@@ -61,6 +63,9 @@ pub struct Solver<R, const D: usize> {
     pub(super) skin: f64,
     pub(super) mach_max: f64,
     pub(super) budget: Budget,
+    pub(super) guard: Guard<D>,
+    /// What is wrong with a state that was put in from outside.
+    pub(super) foreign: Option<Error>,
     pub(super) timers: Timers,
 }
 
@@ -115,7 +120,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
         {
             set.moving = Some(Moving::new(wall, motions));
         }
-        Ok(Solver {
+        let guard = Guard::new(&config, fluid, wall);
+        let mut solver = Solver {
             gravity: Gravity::new(&config)?,
             motion: Motion {
                 gravity: config.gravity(),
@@ -157,38 +163,54 @@ impl<R: Real, const D: usize> Solver<R, D> {
             skin: SKIN * support,
             mach_max: 0.0,
             budget: Budget::default(),
+            guard,
+            foreign: None,
             timers: Timers::default(),
-        })
+        };
+        solver.keep_first();
+        Ok(solver)
     }
 
-    /// Steps until `until` exactly, or until `max_steps` or `patience` is used up.
+    /// Steps until `until` exactly, or until `max_steps` or `patience` is used up; gives the steps computed, those
+    /// taken back among them.
     pub fn advance(
         &mut self,
         until: f64,
         max_steps: u64,
         patience: Duration,
     ) -> Result<(u64, Progress)> {
-        let (started, first) = (Instant::now(), self.step);
+        let (started, mut taken) = (Instant::now(), 0);
+        self.refuse_foreign()?;
         if !self.primed {
-            self.prime()?;
+            if let Err(trouble) = self.prime() {
+                return Err(self.diagnose(trouble));
+            }
+            self.keep_first();
         }
         while self.time < until {
-            if self.step - first >= max_steps {
-                return Ok((self.step - first, Progress::Steps));
+            if taken >= max_steps {
+                return Ok((taken, Progress::Steps));
             }
             if started.elapsed() >= patience {
-                return Ok((self.step - first, Progress::Paused));
+                return Ok((taken, Progress::Paused));
             }
+            taken += 1;
             let (dt, limit, last) = self.choose_time_step(until);
-            self.one_step(dt)?;
+            if let Err(trouble) = self.one_step(dt, limit)
+                && self.goes_back(trouble)?
+            {
+                continue;
+            }
             self.time = if last { until } else { self.time + dt };
             self.set_gravity(self.time);
             self.time_step = dt;
             self.limit = limit;
             self.steps_by_limit[limit as usize] += 1;
             self.step += 1;
+            self.after_step(last)?;
+            self.timers.book(Phase::Guard);
         }
-        Ok((self.step - first, Progress::Done))
+        Ok((taken, Progress::Done))
     }
 
     /// The next time step, what limits it, and whether it ends at `until`.
@@ -197,6 +219,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let (dt, limit) = self
             .limits
             .time_step(sound, self.state.speed, self.state.acceleration);
+        let (dt, limit) = self.guard.shorten(dt, limit);
         let left = until - self.time;
         if dt >= left {
             (left, Limit::Output, true)
@@ -209,33 +232,36 @@ impl<R: Real, const D: usize> Solver<R, D> {
     }
 
     /// Rates of the state at the start, so that the first step is like all others.
-    fn prime(&mut self) -> Result<()> {
+    pub(super) fn prime(&mut self) -> std::result::Result<(), Trouble> {
         self.timers.start();
         self.set_gravity(self.time);
         self.move_walls(self.time);
         self.sort(false);
         if !self.motion.first_half(&mut self.fluid, 0.0) {
-            return Err(self.trouble());
+            return Err(Trouble::NotFinite);
         }
         self.update_walls();
         self.sum_forces();
         self.motion.second_half(&mut self.fluid, 0.0);
         self.sum_density_rates(0.0);
         self.state = self.motion.finish(&mut self.fluid, 0.0);
-        self.check()?;
+        self.check(0.0)?;
         self.primed = true;
         Ok(())
     }
 
     /// One step of `dt`: sort → drift → walls → forces → kick and drift → continuity → check.
-    fn one_step(&mut self, dt: f64) -> Result<()> {
+    fn one_step(&mut self, dt: f64, limit: Limit) -> std::result::Result<(), Trouble> {
         self.timers.start();
+        if self.hopeless(dt, limit) {
+            return Err(Trouble::TimeStep);
+        }
         if 2.0 * (self.travelled + 1.5 * dt * self.state.speed) > self.skin {
             self.sort(false);
         }
         self.set_gravity(self.time + 0.5 * dt);
         if !self.motion.first_half(&mut self.fluid, dt) {
-            return Err(self.trouble());
+            return Err(Trouble::NotFinite);
         }
         self.travelled += 0.5 * dt * self.state.speed;
         self.timers.book(Phase::Integrate);
@@ -255,12 +281,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.state = self.motion.finish(&mut self.fluid, dt);
         self.timers.book(Phase::Integrate);
         if let Some(shift) = &self.fluid.shift {
-            self.travelled += apply_shift(&mut self.fluid.position, shift);
+            let longest = apply_shift(&mut self.fluid.position, shift);
+            self.state.finite &= longest.is_finite();
+            self.travelled += longest;
             self.timers.book(Phase::Shift);
         }
-        self.check()?;
-        self.timers.book(Phase::Guard);
-        Ok(())
+        self.check(dt)
     }
 
     /// Walls as they are prescribed at `time`.
@@ -277,74 +303,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.fluid.sort(&self.grid, mid_step);
         self.travelled = 0.0;
         self.timers.book(Phase::Sort);
-    }
-
-    /// Stops at what is not finite or not physical.
-    fn check(&mut self) -> Result<()> {
-        let reference = self.config.reference_density;
-        let mach = self.state.speed / self.config.sound_speed;
-        self.mach_max = self.mach_max.max(mach);
-        let density_ok =
-            self.state.density_min > 0.5 * reference && self.state.density_max < 1.5 * reference;
-        if (self.state.finite && density_ok) || self.fluid.is_empty() {
-            return Ok(());
-        }
-        Err(self.trouble())
-    }
-
-    /// What is wrong with the particle that is most wrong: numbers that are not finite in the state come before those
-    /// that follow from them, and among equals the lowest id.
-    fn trouble(&self) -> Error {
-        let fluid = &self.fluid;
-        let reference = self.config.reference_density;
-        let mut found: Option<(usize, u32, usize, &'static str, f64)> = None;
-        for i in 0..fluid.len() {
-            let (x, v, density) = (fluid.at(i), fluid.velocity_of(i), fluid.density[i]);
-            let rates: [f64; D] = std::array::from_fn(|a| fluid.acceleration[a][i].to_f64());
-            let outside = density <= 0.5 * reference || density >= 1.5 * reference;
-            let suspects: [(&'static str, &[f64], bool); 6] = [
-                ("position", &x, false),
-                ("velocity", &v, false),
-                ("density", &[density], false),
-                ("acceleration", &rates, false),
-                ("rate of density", &[fluid.density_rate[i].to_f64()], false),
-                ("density", &[density], outside),
-            ];
-            for (rank, (quantity, values, wrong)) in suspects.into_iter().enumerate() {
-                let value = values.iter().copied().find(|v| wrong || !v.is_finite());
-                if let Some(value) = value
-                    && found.is_none_or(|f| (rank, fluid.id[i]) < (f.0, f.1))
-                {
-                    found = Some((rank, fluid.id[i], i, quantity, value));
-                }
-            }
-        }
-        let (_, particle, i, quantity, value) = found.unwrap_or((0, 0, 0, "state", f64::NAN));
-        let (cause, remedy) = if value.is_finite() {
-            (
-                format!(
-                    "the density left the range of a weakly compressible fluid (0.5 to 1.5 of {reference}); the \
-                     largest speed was {:.3e} m/s at a sound speed of {:.3e} m/s",
-                    self.state.speed, self.config.sound_speed
-                ),
-                "raise the sound speed, or lower the Courant number or the time step".to_owned(),
-            )
-        } else {
-            (
-                "a number that is not finite, from a time step too long for the flow or from the input".to_owned(),
-                "lower the Courant number or the time step; check the initial state".to_owned(),
-            )
-        };
-        Error::Instability(Box::new(Instability {
-            time: self.time,
-            step: self.step,
-            particle,
-            position: fluid.at(i).to_vec(),
-            quantity,
-            value,
-            cause,
-            remedy,
-        }))
     }
 }
 

@@ -17,17 +17,26 @@ pub enum Limit {
     Fixed,
     /// A time of output came first.
     Output,
+    /// The guard goes carefully after trouble.
+    Guard,
 }
 
 impl Limit {
     /// All limits.
-    pub const ALL: [Limit; 5] = [
+    pub const ALL: [Limit; 6] = [
         Limit::Acoustic,
         Limit::Viscous,
         Limit::Force,
         Limit::Fixed,
         Limit::Output,
+        Limit::Guard,
     ];
+
+    /// The limit that a checkpoint counts as `index`.
+    pub fn from_index(index: u64) -> Limit {
+        let known = usize::try_from(index).ok().and_then(|k| Self::ALL.get(k));
+        known.copied().unwrap_or_default()
+    }
 
     /// Its name in summaries.
     pub fn name(self) -> &'static str {
@@ -37,6 +46,7 @@ impl Limit {
             Limit::Force => "force",
             Limit::Fixed => "fixed",
             Limit::Output => "output",
+            Limit::Guard => "guard",
         }
     }
 }

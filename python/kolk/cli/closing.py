@@ -37,6 +37,7 @@ def outcome(summary: dict[str, Any]) -> str:
         f"{duration(seconds)}; {summary['particle_steps_per_second'] / 1e6:.2f} million "
         f"particle-steps/s in the engine ({scene['precision']}, {scene['threads']} threads)",
     ]
+    lines.append(stability_line(summary))
     stability = summary["stability"]
     if stability["mach_left_range"]:
         lines.append(
@@ -44,6 +45,29 @@ def outcome(summary: dict[str, Any]) -> str:
             "more than this method is made for. Raise sound_speed, or numerics.expected_speed."
         )
     return "\n".join(lines)
+
+
+def stability_line(summary: dict[str, Any]) -> str:
+    """The stability report in one line."""
+    report, particles = summary["stability"], summary["particles"]["fluid"]
+    rest = summary["scene"].get("density")
+
+    def number(count: int, one: str, many: str) -> str:
+        return f"no {many}" if not count else f"{count:,} {one if count == 1 else many}"
+
+    low, high = report["density_min"], report["density_max"]
+    density = f"density {low / rest:.3f} to {high / rest:.3f} ρ0" if rest else ""
+    parts = [
+        number(report["leaks"], "leak", "leaks"),
+        f"closest pair {report['closest_pair']:.2f} Δp"
+        + (f" ({100 * report['crowded'] / particles:.2g} % crowded)" if report["crowded"] else ""),
+        number(report["voids"], "void", "voids"),
+        density,
+        f"Mach {report['mach']:.2f}",
+        f"energy grew by at most {100 * report['energy_growth']:.2g} %",
+        number(report["retries"], "retry", "retries"),
+    ]
+    return "Stability: " + ", ".join(part for part in parts if part)
 
 
 def phases(seconds: dict[str, Any]) -> str:

@@ -19,6 +19,7 @@ import numpy as np
 
 from kolk.output.checkpoint import Checkpoint, write_checkpoint
 from kolk.output.folder import RunFolder
+from kolk.output.stability import leaks, voids
 from kolk.output.tables import Table
 from kolk.output.vtkhdf import FieldsFile, FieldsLayout, body_ranges
 
@@ -32,6 +33,9 @@ COMPONENTS = {"velocity": 3, "pressure": 1, "density": 1}
 MOST_PLANNED = 2000
 """Frames that a time series makes room for in advance; a longer one grows."""
 
+ADJUSTABLE = ("courant", "time_step", "guard")
+"""Engine settings that may change where a run is resumed."""
+
 HISTORY = (
     "kinetic_energy",
     "potential_energy",
@@ -44,8 +48,10 @@ HISTORY = (
     "pressure_min",
     "pressure_max",
     "closest_pair",
+    "crowded",
 )
-"""Columns of `history.csv` after time, step and time_step."""
+"""Columns of `history.csv` after time, step and time_step, as the engine reports them; then come
+`leaks` and `voids`, and the steps so far that each criterion has set."""
 
 
 class Stopwatch:
@@ -80,6 +86,10 @@ class Sampler:
         length = int(book["length"]) if book else None
         self.sums = [float(value) for value in book["sums"]] if book else []
         self.count = int(book["count"]) if book else 0
+        self._past: list[tuple[float, dict[str, Any]]] = [
+            (float(time), dict(before)) for time, before in (book["past"] if book else ())
+        ]
+        """Time of each reading that the engine may still take back, and the book before it."""
         self.table = Table(folder.probe(probe.name), ("time", *probe.columns), length)
 
     def take(self, simulation: Simulation) -> None:
@@ -87,6 +97,7 @@ class Sampler:
         now = simulation.time
         if now < self.next * self.every * (1.0 - 1e-12):
             return
+        self._past.append((now, self._count()))
         reading = (now, *self.probe.evaluate(simulation))
         self.sums = (
             [a + b for a, b in zip(self.sums, reading, strict=True)] if self.sums else list(reading)
@@ -98,8 +109,24 @@ class Sampler:
             self.sums, self.count = [], 0
         self.next = math.floor(now / self.every * (1.0 + 1e-12)) + 1
 
+    def settle(self, kept: float) -> None:
+        """Forgets how to take back the readings up to the time `kept`: the engine never will."""
+        self._past = [entry for entry in self._past if entry[0] > kept]
+
+    def take_back(self, kept: float) -> None:
+        """Takes back the readings after the time `kept`, to which the engine has gone back."""
+        undone = [book for time, book in self._past if time > kept]
+        if undone:
+            first = undone[0]
+            self.next, self.sums, self.count = first["next"], first["sums"], first["count"]
+            self.table.cut(first["length"])
+        self._past = []
+
     def book(self) -> dict[str, Any]:
         """What a checkpoint keeps of it."""
+        return {**self._count(), "past": self._past}
+
+    def _count(self) -> dict[str, Any]:
         return {
             "next": self.next,
             "length": self.table.length,
@@ -126,6 +153,9 @@ class Recorder:
         self._series: FieldsFile | None = None
         self._samplers: list[Sampler] = []
         self._history: Table | None = None
+        self._undone = 0
+        self.written = -math.inf
+        """Time of the last frame, s."""
 
     @property
     def frames(self) -> int:
@@ -142,7 +172,10 @@ class Recorder:
         """What a checkpoint must belong to: engine settings, particles, precision, probes."""
         simulation = self.simulation
         digest = hashlib.sha256()
-        digest.update(simulation.scene.engine_config().encode())
+        config = json.loads(simulation.scene.engine_config())
+        # What a run that became unstable may go on with is not part of it.
+        settings = {key: value for key, value in config.items() if key not in ADJUSTABLE}
+        digest.update(json.dumps(settings).encode())
         digest.update(simulation.precision.encode())
         described = [(p.name, p.quantity, p.columns, every) for p, every in self.probes]
         digest.update(json.dumps([described, self._fields]).encode())
@@ -154,26 +187,31 @@ class Recorder:
 
     def begin(self) -> None:
         """Creates the files and writes the first frame and the first samples."""
-        columns = ("time", "step", "time_step", *HISTORY)
-        self._history = Table(self.folder.history, columns)
+        self._history = Table(self.folder.history, self._columns())
         self._samplers = [Sampler(p, every, self.folder) for p, every in self.probes]
         self.frame()
         self.sample()
 
     def resume(self, book: Mapping[str, Any]) -> None:
         """Cuts the files back to what a checkpoint counts, ready to go on."""
-        columns = ("time", "step", "time_step", *HISTORY)
-        self._history = Table(self.folder.history, columns, int(book["history"]))
+        self._history = Table(self.folder.history, self._columns(), int(book["history"]))
         kept = book["probes"]
         self._samplers = [Sampler(p, every, self.folder, kept[p.name]) for p, every in self.probes]
+        self._undone, self.written = int(book["undone"]), float(book["written"])
         self._series = FieldsFile.reopen(self.folder.fields, int(book["frames"]))
 
     def sample(self) -> None:
-        """Takes the probe samples that are due."""
+        """Takes the probe samples that are due, and back those of steps that were taken back."""
         if self._samplers:
             with self.watch.phase("probes"):
+                guard = self.simulation.retries
+                kept = math.inf if guard["kept"] is None else guard["kept"]
                 for sampler in self._samplers:
+                    if guard["undone"] != self._undone:
+                        sampler.take_back(kept)
                     sampler.take(self.simulation)
+                    sampler.settle(kept)
+                self._undone = guard["undone"]
 
     def frame(self) -> None:
         """Writes a frame and a row of the history."""
@@ -198,6 +236,7 @@ class Recorder:
             else:
                 self._series.append(simulation.time, position, values)
             self._add_history()
+            self.written = simulation.time
 
     def checkpoint(self, extra: Mapping[str, Any]) -> None:
         """Replaces the checkpoint by the present state; `extra` joins the book."""
@@ -208,6 +247,8 @@ class Recorder:
             book = {
                 "frames": self.frames,
                 "history": self._history.length,
+                "undone": self._undone,
+                "written": self.written,
                 "probes": {s.probe.name: s.book() for s in self._samplers},
                 **extra,
             }
@@ -225,12 +266,20 @@ class Recorder:
         tables = [sampler.table for sampler in self._samplers]
         return [*tables, self._history] if self._history is not None else tables
 
+    def _columns(self) -> tuple[str, ...]:
+        limits = (f"steps_{name}" for name in self.simulation.steps_by_limit)
+        return ("time", "step", "time_step", *HISTORY, "leaks", "voids", *limits)
+
     def _add_history(self) -> None:
-        now = self.simulation.diagnostics
+        simulation = self.simulation
+        now = simulation.diagnostics
         now["dissipated"] = math.fsum(dict(now["dissipated"]).values())
-        head = (now["time"], self.simulation.step_count, self.simulation.time_step)
+        head = (now["time"], simulation.step_count, simulation.time_step)
+        tail = (leaks(simulation), voids(simulation))
         assert self._history is not None
-        self._history.append((*head, *(now[name] for name in HISTORY)))
+        self._history.append(
+            (*head, *(now[name] for name in HISTORY), *tail, *simulation.steps_by_limit.values())
+        )
 
     def _layout(self) -> FieldsLayout:
         bodies = list(self.simulation.initial.values())

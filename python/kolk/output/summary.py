@@ -10,9 +10,7 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import numpy as np
-
-from kolk.output.tables import read_columns
+from kolk.output.stability import stability_report
 
 if TYPE_CHECKING:
     from kolk.output.recorder import Recorder
@@ -97,21 +95,6 @@ def energy_budget(initial: Mapping[str, float], diagnostics: Mapping[str, Any]) 
     }
 
 
-def stability_report(history: Path, mach_left_range: bool) -> dict[str, Any]:
-    """How far the run stayed inside the range that its method is made for.
-
-    history: the run's `history.csv`; the report holds the extremes over its rows.
-    """
-    table = read_columns(history)
-    largest = ("mach", "speed_max", "density_max", "pressure_max")
-    smallest = ("density_min", "pressure_min", "closest_pair")
-    return {
-        "mach_left_range": mach_left_range,
-        **{name: float(np.max(table[name])) for name in largest},
-        **{name: float(np.min(table[name])) for name in smallest},
-    }
-
-
 def summary_of(
     simulation: Simulation,
     recorder: Recorder,
@@ -146,6 +129,7 @@ def summary_of(
             "dimension": simulation.dimension,
             "spacing": scene.spacing,
             "sound_speed": scene.sound_speed,
+            "density": scene.fluid[0].density,
             "precision": simulation.precision,
             "threads": simulation.threads,
         },
@@ -164,7 +148,7 @@ def summary_of(
         "memory": simulation.memory,
         "energy": energy_budget(initial_energy, now),
         "momentum": now["momentum"],
-        "stability": stability_report(recorder.folder.history, simulation.mach_warning),
+        "stability": stability_report(recorder.folder.history, simulation, limits),
         "effects": simulation.effects,
         "choices": [asdict(choice) for choice in choices(scene)],
         "probes": {

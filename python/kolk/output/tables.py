@@ -55,6 +55,17 @@ class Table:
         except OSError as error:
             raise storage_error(self.path, error, "add a row to the table") from error
 
+    def cut(self, length: int) -> None:
+        """Takes back the rows beyond `length` bytes."""
+        if length == self.length:
+            return
+        try:
+            os.ftruncate(self._descriptor, length)
+            os.lseek(self._descriptor, length, os.SEEK_SET)
+        except OSError as error:
+            raise storage_error(self.path, error, "take back rows of the table") from error
+        self.length = length
+
     def sync(self) -> None:
         """Makes the rows durable."""
         try:

@@ -61,4 +61,5 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "wall": wall,
         "courant": numerics.courant,
         "time_step": numerics.time_step,
+        "guard": numerics.guard == "on",
     }

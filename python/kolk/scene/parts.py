@@ -358,6 +358,11 @@ class Numerics(Model):
         default=None, description="the integrator's own if absent"
     )
     time_step: Positive | None = Field(default=None, description="fixed, s; adaptive if absent")
+    guard: Literal["on", "off"] = Field(
+        default="on",
+        description="keep a state in memory to go back to, with a shorter step, on trouble; off: "
+        "trouble ends the run at once",
+    )
     expected_speed: Positive | None = Field(
         default=None, description="largest speed that the flow will reach, m/s: for the sound speed"
     )

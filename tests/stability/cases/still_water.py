@@ -1,0 +1,51 @@
+"""Water at rest for a long time."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+import kolk
+
+from ..suite import Case, Figure, Result
+from ..watching import Watch, number, simulation
+
+DEPTH, GRAVITY, DENSITY = 0.5, 9.81, 1000.0
+
+
+def run(variant: str) -> Result:
+    long = number(variant)
+    resolution = 50 if long > 50 else 20
+    sim = simulation(kolk.load("still-water").replace(spacing=DEPTH / resolution))
+    water, unit = sim.bodies["water"], math.sqrt(DEPTH / GRAVITY)
+    height = float(np.mean(water.position[:, 1]))
+    watch = Watch(sim).run(long * unit, 20)
+    drift = float(np.mean(water.position[:, 1])) - height
+    weight = float(water.mass.sum()) * GRAVITY * DEPTH
+    bottom = np.stack([np.linspace(0.3, 0.7, 9), np.zeros(9)], axis=1)
+    total = 0.0
+    for _ in range(40):
+        sim.advance(0.05 * unit)
+        total += float(np.mean(sim.sample(bottom, ["density"])["density"]))
+    rest = sim.initial["water"]
+    lowest = rest.position[:, 1] < 0.6 * DEPTH / resolution
+    exact = float(rest.density[lowest].mean())
+    return watch.result(
+        variant,
+        *watch.figures(closest=0.6, speed=0.1 * math.sqrt(GRAVITY * DEPTH)),
+        # The middle of the water rises by half of what its surface does.
+        Figure("drift of the level", 2.0 * abs(drift) * resolution / DEPTH, most=0.5, unit="Δp"),
+        Figure("kinetic energy / (m g H)", sim.energy.kinetic / weight, most=1e-5, goal=1e-8),
+        Figure("error of density at the bottom", abs(total / 40 / exact - 1.0), most=1e-3),
+    )
+
+
+case = Case(
+    title="Water at rest",
+    setup="A tank at rest for 1000 √(H/g).",
+    failure="the surface swells, currents",
+    run=run,
+    short=("√(H/g) x 8",),
+    full=("√(H/g) x 1000",),
+)
