@@ -34,6 +34,8 @@ pub struct Diagnostics {
     pub pressure_max: f64,
     /// Distance of the closest pair of fluid particles in initial spacings; infinite if no two are in reach.
     pub closest_pair: f64,
+    /// Particles brought back from behind a wall since the start.
+    pub leaks: u64,
     /// Energy that effects have taken since the start, in J.
     pub dissipated: Vec<(&'static str, f64)>,
 }
@@ -101,6 +103,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             pressure_min: eos.pressure_at(low),
             pressure_max: eos.pressure_at(high),
             closest_pair: self.closest_pair(),
+            leaks: self.boundary.as_ref().map_or(0, |b| b.leaks),
             dissipated: self
                 .budget
                 .until(self.time)

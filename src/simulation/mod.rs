@@ -1,16 +1,19 @@
 //! A simulation: assembled from a configuration and particles, advanced in time, looked at.
 
 mod assembly;
+mod boundary;
 mod budget;
 mod checkpoint;
 mod config;
 mod diagnostics;
 mod engine;
+mod facet_walls;
 mod gravity;
 mod inspect;
 mod reaction;
 mod sample;
 mod solver;
+mod surfaces;
 mod timers;
 
 pub use checkpoint::{Entries, Entry};
@@ -22,4 +25,5 @@ pub use diagnostics::Diagnostics;
 pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulation, Status};
 pub use sample::Sample;
 pub use solver::{Body, Progress, Solver};
+pub use surfaces::SurfaceInput;
 pub use timers::{PHASES, Phase, Timers};
