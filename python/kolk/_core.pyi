@@ -153,7 +153,12 @@ def particle_shift(
 @final
 class Simulation:
     def __new__(
-        cls, config_json: str, bodies: Sequence[_Body], precision: str, threads: int
+        cls,
+        config_json: str,
+        bodies: Sequence[_Body],
+        precision: str,
+        threads: int,
+        surfaces: Sequence[tuple[str, _Floats]] = [],
     ) -> Simulation: ...
     @property
     def time(self) -> float: ...

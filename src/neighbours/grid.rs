@@ -250,6 +250,34 @@ impl<const D: usize> Grid<D> {
         }
     }
 
+    /// Visits the cells that overlap the box from `low` to `high`, each with the box that it covers there.
+    pub fn for_each_within(
+        &self,
+        low: &[f64; D],
+        high: &[f64; D],
+        mut visit: impl FnMut(usize, &[f64; D], &[f64; D]),
+    ) {
+        let coordinate =
+            |a: usize, x: f64| ((x - self.low[a]) * self.inverse_edge[a]).floor() as i64;
+        let first: [i64; D] = std::array::from_fn(|a| coordinate(a, low[a]));
+        let count: [usize; D] = std::array::from_fn(|a| {
+            ((coordinate(a, high[a]) - first[a] + 1).max(0) as usize).min(self.cells[a])
+        });
+        for k in 0..count.iter().product() {
+            let (mut rest, mut cell, mut stride) = (k, 0, 1);
+            let (mut from, mut to) = ([0.0; D], [0.0; D]);
+            for a in 0..D {
+                let c = first[a] + (rest % count[a]) as i64;
+                rest /= count[a];
+                cell += stride * c.rem_euclid(self.cells[a] as i64) as usize;
+                stride *= self.cells[a];
+                from[a] = self.low[a] + c as f64 * self.edge[a];
+                to[a] = from[a] + self.edge[a];
+            }
+            visit(cell, &from, &to);
+        }
+    }
+
     /// The cell at `at + step - 1` on axis `a`, and the shift of its particles.
     #[inline(always)]
     fn neighbour(&self, a: usize, at: usize, step: usize) -> (usize, f64) {

@@ -54,6 +54,13 @@ impl<R: Real, const D: usize> Moving<R, D> {
         found.map(|(_, motion)| motion.at(time))
     }
 
+    /// Where the particle of an `id` is, as of the last move; `None` for a wall at rest.
+    #[inline]
+    pub fn pose_now(&self, id: u32) -> Option<&Pose> {
+        let motion = self.motion_of[id as usize] as usize;
+        motion.checked_sub(1).map(|k| &self.poses[k])
+    }
+
     /// Bytes held.
     pub fn bytes(&self) -> usize {
         self.motion_of.capacity() * size_of::<u16>()

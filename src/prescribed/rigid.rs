@@ -120,6 +120,21 @@ impl Pose {
         }
     }
 
+    /// Where the point that is at `x` now was at the start.
+    #[inline]
+    pub fn home_of<const D: usize>(&self, x: &[f64; D]) -> [f64; D] {
+        let arm = Vector3::from_fn(|a, _| x.get(a).copied().unwrap_or(0.0)) - self.offset;
+        let home = self.turn.tr_mul(&arm);
+        std::array::from_fn(|a| home[a])
+    }
+
+    /// A direction of the start as it is now.
+    #[inline]
+    pub fn turned<const D: usize>(&self, direction: &[f64; D]) -> [f64; D] {
+        let now = self.turn * Vector3::from_fn(|a, _| direction.get(a).copied().unwrap_or(0.0));
+        std::array::from_fn(|a| now[a])
+    }
+
     /// Position, velocity and acceleration of the point that was at `start`.
     #[inline]
     pub fn of<const D: usize>(&self, start: &[f64; D]) -> [[f64; D]; 3] {

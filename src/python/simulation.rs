@@ -2,10 +2,13 @@
 
 use crate::error::Error;
 use crate::particles::Given;
-use crate::simulation::{BodyInput, Config, Entry, Precision, Progress, Simulation, Trouble};
+use crate::simulation::{
+    BodyInput, Config, Entry, Precision, Progress, Simulation, SurfaceInput, Trouble,
+};
 use crate::step::Limit;
 use numpy::{
-    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyUntypedArrayMethods,
+    PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3,
+    PyUntypedArrayMethods,
 };
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -62,13 +65,16 @@ pub(super) struct PySimulation(Simulation);
 
 #[pymethods]
 impl PySimulation {
+    /// `surfaces`: the name of a wall, and its facets (m, D, D).
     #[new]
+    #[pyo3(signature = (config_json, bodies, precision, threads, surfaces=Vec::new()))]
     fn new(
         py: Python<'_>,
         config_json: &str,
         bodies: Vec<BodyArrays<'_>>,
         precision: &str,
         threads: usize,
+        surfaces: Vec<(String, PyReadonlyArray3<'_, f64>)>,
     ) -> PyResult<Self> {
         let config: Config = serde_json::from_str(config_json)
             .map_err(|e| SceneError::new_err(format!("config: {e}")))?;
@@ -115,7 +121,14 @@ impl PySimulation {
                 particles,
             });
         }
-        py.detach(|| Simulation::new(config, inputs, precision, threads))
+        let surfaces: Vec<SurfaceInput> = surfaces
+            .into_iter()
+            .map(|(body, corners)| SurfaceInput {
+                body,
+                corners: corners.as_array().iter().copied().collect(),
+            })
+            .collect();
+        py.detach(|| Simulation::with_surfaces(config, inputs, &surfaces, precision, threads))
             .map(PySimulation)
             .map_err(|e| raise(py, e))
     }
@@ -246,6 +259,7 @@ impl PySimulation {
         dict.set_item("pressure_max", d.pressure_max)?;
         dict.set_item("closest_pair", d.closest_pair)?;
         dict.set_item("crowded", d.crowded)?;
+        dict.set_item("leaks", d.leaks)?;
         let dissipated = PyDict::new(py);
         for (name, energy) in d.dissipated {
             dissipated.set_item(name, energy)?;

@@ -11,7 +11,7 @@ use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
-use crate::particles::{Column, OptionalColumns};
+use crate::particles::{Column, OptionalColumns, Wall};
 use crate::prescribed::RigidMotion;
 use crate::simd::Real;
 use crate::step::{DensityRate, Forces, ShiftTerm, WallDensityRate};
@@ -93,7 +93,7 @@ pub(super) fn motions(
 }
 
 /// Columns to be written, the rest empty.
-fn outputs<'a, R: Real>(
+pub(super) fn outputs<'a, R: Real>(
     columns: impl IntoIterator<Item = (usize, &'a mut Column<R>)>,
 ) -> Output<'a, R> {
     let mut out: Output<R> = std::array::from_fn(|_| Default::default());
@@ -103,16 +103,26 @@ fn outputs<'a, R: Real>(
     out
 }
 
+/// The walls, if the fluid feels their particles.
+fn felt<'a, R: Real, const D: usize>(
+    config: &Config,
+    wall: &'a Option<Wall<R, D>>,
+) -> Option<&'a Wall<R, D>> {
+    let method = config.wall.map(|w| w.method);
+    wall.as_ref()
+        .filter(|_| method.is_some_and(WallMethod::uses_particles))
+}
+
 /// What a sweep works with.
-struct Stage<'a, R, const D: usize> {
-    grid: &'a Grid<D>,
-    sweeper: &'a Sweeper<R>,
-    target: &'a Source<'a, R, D>,
-    source: &'a Source<'a, R, D>,
+pub(super) struct Stage<'a, R, const D: usize> {
+    pub(super) grid: &'a Grid<D>,
+    pub(super) sweeper: &'a Sweeper<R>,
+    pub(super) target: &'a Source<'a, R, D>,
+    pub(super) source: &'a Source<'a, R, D>,
 }
 
 impl<R: Real, const D: usize> Stage<'_, R, D> {
-    fn run<P: Pass<R, D>>(&self, kernel: KernelName, pass: &P, out: Output<R>) {
+    pub(super) fn run<P: Pass<R, D>>(&self, kernel: KernelName, pass: &P, out: Output<R>) {
         let sweep = Sweep {
             grid: self.grid,
             target: self.target,
@@ -124,7 +134,7 @@ impl<R: Real, const D: usize> Stage<'_, R, D> {
 }
 
 /// Fields of the fluid that the sweep of forces reads.
-fn force_source<'a, R: Real, const D: usize>(
+pub(super) fn force_source<'a, R: Real, const D: usize>(
     position: &'a [Column<f64>; D],
     cells: &'a Cells,
     volume: &'a Column<R>,
@@ -187,6 +197,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 stage.run(self.kernel, &pass, out);
             }
             WallMethod::Dynamic => wall.follow_density(&self.motion.eos),
+            WallMethod::ModifiedDynamic => self.extrapolate_from_ghosts(),
+            WallMethod::SemiAnalytical | WallMethod::Penalty => {}
         }
         self.timers.book(Phase::Walls);
     }
@@ -221,6 +233,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         self.timers.book(Phase::Forces);
+        self.add_facet_forces();
     }
 
     fn forces_with<V: PairTerm<R, D>, W: PairTerm<R, D>>(&mut self, effects: V, friction: W) {
@@ -258,7 +271,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             &fluid.condensation,
             &fluid.pair_velocity,
         );
-        let wall = self.wall.as_ref().map(|w| {
+        let wall = felt(&self.config, &self.wall).map(|w| {
             let velocity = w.slip_velocity.as_ref().unwrap_or(&w.pair_velocity);
             force_source(
                 &w.position,
@@ -304,6 +317,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         self.timers.book(Phase::Continuity);
+        self.add_facet_rates();
     }
 
     fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
@@ -341,7 +355,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if let Some(gradient) = &fluid.gradient {
             source = source.with_vector(slot::GRADIENT, gradient);
         }
-        let wall = self.wall.as_ref().map(|w| {
+        let wall = felt(&self.config, &self.wall).map(|w| {
             Source::new(&w.position, &w.cells)
                 .with(slot::VOLUME, &w.volume)
                 .with(slot::CONDENSATION, &w.condensation)

@@ -188,6 +188,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 put("wall_density_rate", widen(rate));
             }
         }
+        if let Some(boundary) = &self.boundary {
+            put("leaks", Entry::Integers(vec![boundary.leaks]));
+        }
         let s = &self.state;
         put(
             "scalars",
@@ -283,6 +286,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 from.column("wall_density", density)?;
                 from.column("wall_density_rate", rate)?;
             }
+        }
+        if let Some(boundary) = &mut self.boundary {
+            boundary.leaks = from.integers("leaks", 1)?[0];
         }
         let s = from.reals("scalars", 8)?;
         (self.time, self.time_step, self.travelled, self.mach_max) = (s[0], s[1], s[2], s[3]);

@@ -34,6 +34,8 @@ pub struct Diagnostics {
     pub pressure_max: f64,
     /// Distance of the closest pair of fluid particles in initial spacings; infinite if no two are near.
     pub closest_pair: f64,
+    /// Particles brought back from behind a wall since the start.
+    pub leaks: u64,
     /// Energy that effects have taken since the start, in J.
     pub dissipated: Vec<(&'static str, f64)>,
     /// Particles with another nearer than half a spacing.
@@ -105,6 +107,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             pressure_max: eos.pressure_at(high),
             closest_pair: crowding.closest,
             crowded: crowding.crowded,
+            leaks: self.boundary.as_ref().map_or(0, |b| b.leaks),
             dissipated: self
                 .budget
                 .until(self.time)

@@ -6,6 +6,7 @@ use super::diagnostics::Diagnostics;
 use super::retry::Retries;
 use super::sample::Sample;
 use super::solver::{Body, Progress, Solver};
+use super::surfaces::{SurfaceInput, check_surfaces, facets};
 use crate::error::{Error, Result};
 use crate::particles::Given;
 use crate::prescribed::Pose;
@@ -201,6 +202,20 @@ impl Simulation {
         precision: Precision,
         threads: usize,
     ) -> Result<Self> {
+        Self::with_surfaces(config, bodies, &[], precision, threads)
+    }
+
+    /// The same with surfaces of walls, through which no particle passes.
+    ///
+    /// # Errors
+    /// As [`Self::new`]; a surface that is none, or none where the walls' method needs one.
+    pub fn with_surfaces(
+        config: Config,
+        bodies: Vec<BodyInput>,
+        surfaces: &[SurfaceInput],
+        precision: Precision,
+        threads: usize,
+    ) -> Result<Self> {
         config.validate()?;
         let dimension = config.dimension;
         let mut fluid = Given::default();
@@ -234,6 +249,7 @@ impl Simulation {
                 "bodies: there is no fluid particle; add a fluid".to_owned(),
             ));
         }
+        check_surfaces(&config, &table, surfaces)?;
         let pool = rayon::ThreadPoolBuilder::new()
             .num_threads(threads)
             .thread_name(|k| format!("kolk-{k}"))
@@ -241,19 +257,19 @@ impl Simulation {
             .map_err(|e| Error::Input(format!("threads: {threads} could not be started: {e}")))?;
         let threads = pool.current_num_threads();
         let engine: Box<dyn Engine> = pool.install(|| -> Result<Box<dyn Engine>> {
+            macro_rules! solver {
+                ($real:ty, $dimension:literal) => {{
+                    let facets = facets(&table, surfaces);
+                    let solver =
+                        Solver::<$real, $dimension>::new(config, table, &fluid, &wall, threads)?;
+                    Box::new(solver.with_surface(facets))
+                }};
+            }
             Ok(match (dimension, precision) {
-                (2, Precision::F64) => Box::new(Solver::<f64, 2>::new(
-                    config, table, &fluid, &wall, threads,
-                )?),
-                (2, Precision::Mixed) => Box::new(Solver::<f32, 2>::new(
-                    config, table, &fluid, &wall, threads,
-                )?),
-                (_, Precision::F64) => Box::new(Solver::<f64, 3>::new(
-                    config, table, &fluid, &wall, threads,
-                )?),
-                (_, Precision::Mixed) => Box::new(Solver::<f32, 3>::new(
-                    config, table, &fluid, &wall, threads,
-                )?),
+                (2, Precision::F64) => solver!(f64, 2),
+                (2, Precision::Mixed) => solver!(f32, 2),
+                (_, Precision::F64) => solver!(f64, 3),
+                (_, Precision::Mixed) => solver!(f32, 3),
             })
         })?;
         Ok(Simulation {

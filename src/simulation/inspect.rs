@@ -72,6 +72,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if let Some(wall) = &self.wall {
             groups.push(("walls", wall.bytes()));
         }
+        if let Some(boundary) = &self.boundary {
+            groups.push(("wall surface", boundary.bytes()));
+        }
         groups.push(("buffers", self.sweeper.bytes()));
         groups.push(("guard", self.guard.bytes()));
         groups

@@ -1,6 +1,7 @@
 //! A simulation: assembled from a configuration and particles, advanced in time, looked at.
 
 mod assembly;
+mod boundary;
 mod budget;
 mod checkpoint;
 mod config;
@@ -8,6 +9,7 @@ mod crowding;
 mod diagnosis;
 mod diagnostics;
 mod engine;
+mod facet_walls;
 mod foreign;
 mod gravity;
 mod guard;
@@ -17,6 +19,7 @@ mod retry;
 mod sample;
 mod snapshot;
 mod solver;
+mod surfaces;
 mod timers;
 
 pub use checkpoint::{Entries, Entry};
@@ -30,4 +33,5 @@ pub use engine::{BodyInput, BodyState, EffectState, Precision, Samples, Simulati
 pub use retry::{Retries, Trouble};
 pub use sample::Sample;
 pub use solver::{Body, Progress, Solver};
+pub use surfaces::SurfaceInput;
 pub use timers::{PHASES, Phase, Timers};

@@ -17,6 +17,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let c = &self.config;
         let (h, rho) = (c.smoothing_length, c.reference_density);
         let sticks = c.wall.is_some_and(|w| w.slip == Slip::No);
+        if c.wall.is_some_and(|w| !w.method.uses_particles()) {
+            let total = self.force_on_facets(ids);
+            let moment = if D == 3 { &total[3..] } else { &total[5..] };
+            return (std::array::from_fn(|a| total[a]), moment.to_vec());
+        }
         let total = match c.laminar_viscosity.filter(|_| sticks) {
             None => self.reaction(ids, ()),
             // As in the sweep of forces: beside artificial viscosity there is one form.

@@ -27,7 +27,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         points.par_iter().map(|x| self.sample_point(x)).collect()
     }
 
-    fn sample_point(&self, x: &[f64; D]) -> Sample<D> {
+    pub(super) fn sample_point(&self, x: &[f64; D]) -> Sample<D> {
         use crate::eos::EquationOfState;
         let (fluid, kernel, h) = (&self.fluid, self.kernel, self.config.smoothing_length);
         let reach2 = (h * kernel.support()).powi(2);

@@ -1,5 +1,6 @@
 //! The loop: one step is a screen.
 
+use super::boundary::Boundary;
 use super::budget::Budget;
 use super::config::{Config, ViscosityForm};
 use super::gravity::Gravity;
@@ -44,6 +45,7 @@ pub struct Solver<R, const D: usize> {
     pub(super) grid: Grid<D>,
     pub(super) fluid: Fluid<R, D>,
     pub(super) wall: Option<Wall<R, D>>,
+    pub(super) boundary: Option<Boundary<R, D>>,
     pub(super) motion: Motion<D>,
     /// Where gravity depends on time.
     pub(super) gravity: Option<Gravity<D>>,
@@ -149,6 +151,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 super::assembly::optional_columns::<D>(&config),
             ),
             wall: set_of_walls,
+            boundary: None,
             grid,
             bodies,
             config,
@@ -286,6 +289,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             self.travelled += longest;
             self.timers.book(Phase::Shift);
         }
+        self.keep_inside(self.time + dt);
         self.check(dt)
     }
 
@@ -295,6 +299,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             && wall.moving.is_some()
         {
             wall.move_to(time, &self.grid, self.skin);
+            self.move_ghosts();
             self.timers.book(Phase::Walls);
         }
     }

@@ -3,6 +3,7 @@
 #![allow(dead_code, unreachable_pub)]
 
 pub mod disorder;
+pub mod faces;
 
 use kolk::particles::Given;
 use kolk::simulation::{BodyInput, Config, Entries, Entry, Precision, Simulation};

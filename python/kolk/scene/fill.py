@@ -23,6 +23,7 @@ from .model import Scene
 from .overlap import check_places
 from .parts import Fluid, Wall
 from .shapes import Box, Shape, Tank
+from .surface import wall_surface
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -44,6 +45,8 @@ class Body:
     """(n,) in kg/m^3; of a wall, the reference density."""
     mass: FloatArray
     """(n,) in kg, per metre in 2D."""
+    surface: FloatArray | None = None
+    """Of a wall: its facets (m, D, D) in m, corners so that the normal points into the fluid."""
 
     def __len__(self) -> int:
         return len(self.position)
@@ -82,10 +85,14 @@ def fill(scene: Scene) -> Filling:
         _fluid_body(scene, f, p, v, sound_speed)
         for f, p, v in zip(scene.fluid, fluids, velocities, strict=True)
     ]
-    bodies += [_wall_body(scene, w, p) for w, p in zip(scene.wall, walls, strict=True)]
+    surfaces = wall_surface(scene, [p.position for p in walls])
+    bodies += [
+        _wall_body(scene, w, p, s) for w, p, s in zip(scene.wall, walls, surfaces, strict=True)
+    ]
     for body in bodies:
-        for column in (body.position, body.velocity, body.density, body.mass):
-            column.flags.writeable = False
+        for column in (body.position, body.velocity, body.density, body.mass, body.surface):
+            if column is not None:
+                column.flags.writeable = False
     return Filling(tuple(bodies), sound_speed, expected)
 
 
@@ -299,7 +306,7 @@ def _pressure(scene: Scene, fluid: Fluid, part: _Part, sound_speed: float) -> Fl
     )
 
 
-def _wall_body(scene: Scene, wall: Wall, part: _Part) -> Body:
+def _wall_body(scene: Scene, wall: Wall, part: _Part, surface: FloatArray) -> Body:
     n = len(part.position)
     reference = scene.fluid[0].density
     mass = np.full(n, reference * part.volume)
@@ -313,4 +320,5 @@ def _wall_body(scene: Scene, wall: Wall, part: _Part) -> Body:
         np.tile(own, (n, 1)),
         np.full(n, reference),
         mass,
+        surface,
     )

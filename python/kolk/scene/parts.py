@@ -353,7 +353,9 @@ class Numerics(Model):
         default=None,
         description="whether the fluid has one; if absent: under gravity, or without walls",
     )
-    wall: Literal["auto", "adami", "dynamic"] = Field(default="auto", description="auto: adami")
+    wall: Literal["auto", "adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty"] = (
+        Field(default="auto", description="auto: adami")
+    )
     courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
         default=None, description="the integrator's own if absent"
     )
