@@ -168,6 +168,9 @@ def _time_step(scene: Scene) -> float:
     viscosity = scene.fluid[0].viscosity
     if viscosity is not None and viscosity.laminar is not None:
         limits.append(0.125 * h**2 / viscosity.laminar)
+    yielding = None if viscosity is None else viscosity.herschel_bulkley
+    if yielding is not None and yielding.max_viscosity is not None:
+        limits.append(0.045 * h**2 * scene.fluid[0].density / yielding.max_viscosity)
     if scene.gravity_at_start is not None and any(scene.gravity_at_start):
         limits.append(0.25 * math.sqrt(h / float(np.linalg.norm(scene.gravity_at_start))))
     return min(limits)

@@ -2,6 +2,7 @@
 
 mod assembly;
 mod budget;
+mod catalogue;
 mod checkpoint;
 mod config;
 mod diagnostics;

@@ -5,6 +5,7 @@ mod dynamic;
 
 pub use adami::Extrapolation;
 
+use crate::effects::{Declaration, Quantity};
 use serde::{Deserialize, Serialize};
 
 /// How walls act on the fluid.
@@ -26,3 +27,23 @@ pub enum Slip {
     /// It sticks.
     No,
 }
+
+/// What the effect is.
+pub const WALLS: Declaration = Declaration {
+    name: "walls",
+    columns: &[],
+    sweeps: 1,
+    limit: None,
+    dissipates: "",
+    source: "Adami, Hu & Adams 2012; Crespo, Gómez-Gesteira & Dalrymple 2007",
+};
+
+/// Walls in prescribed motion.
+pub const MOVING_WALLS: Declaration = Declaration {
+    name: "moving walls",
+    columns: &[Quantity::Vector("acceleration of walls")],
+    sweeps: 0,
+    limit: None,
+    dissipates: "",
+    source: "",
+};

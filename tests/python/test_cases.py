@@ -17,7 +17,10 @@ NAMES = (
     "dam-break-box",
     "dam-break-column",
     "dam-break-decourcy",
+    "herschel-bulkley-channel",
+    "mud",
     "poiseuille",
+    "sloshing",
     "standing-wave",
     "still-water",
     "surge-front",
@@ -68,7 +71,7 @@ def test_a_case_at_another_spacing(name: str) -> None:
 @pytest.mark.parametrize("name", NAMES)
 def test_comparisons_point_at_what_exists(name: str) -> None:
     case = cases.get(name)
-    assert case.comparisons
+    assert case.comparisons or "none measured" in case.reference
     probes = {p.name for p in case.scene.probe}
     for item in case.comparisons:
         assert item.probe is None or item.probe in probes
