@@ -1,6 +1,6 @@
 //! Artificial viscosity.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 
@@ -60,3 +60,13 @@ impl<R: Real, const D: usize> PairTerm<R, D> for ArtificialViscosity {
         tally.push(own_density * other_density * (viscous * pair.slope));
     }
 }
+
+/// What the effect is.
+pub const ARTIFICIAL_VISCOSITY: Declaration = Declaration {
+    name: "artificial viscosity",
+    columns: &[],
+    sweeps: 0,
+    limit: None,
+    dissipates: "kinetic energy of approaching pairs",
+    source: "Monaghan 1992",
+};

@@ -1,6 +1,6 @@
 //! Contact: what keeps particles apart, and out of walls, where pressure does not.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 
@@ -69,3 +69,13 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Contact {
         tally.push(L::constant(self.strength) * depth.max(L::zero()) * dashpot);
     }
 }
+
+/// What the effect is.
+pub const CONTACT: Declaration = Declaration {
+    name: "contact",
+    columns: &[],
+    sweeps: 0,
+    limit: None,
+    dissipates: "kinetic energy of particles that close up or hit a wall",
+    source: "Koshizuka, Nobe & Oka 1998",
+};

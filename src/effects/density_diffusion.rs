@@ -5,7 +5,7 @@
 //! expect. Since `r_ji·∇W_ij/r² = -F`, no division is left. The pair term is antisymmetric: `Σ V_i D_i = 0`. A
 //! diffusivity of `δ h c0`: dissipates compression energy; use δ = 0.1.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm, Quantity};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Pair, Splat, Sums, Tally, Uses};
 
@@ -176,5 +176,21 @@ impl DensityGradient {
     #[inline(always)]
     pub fn finish<R: Real, const D: usize>(sums: &Sums<R, D>) -> [R; D] {
         sums.renormalise(sums.gradient)
+    }
+}
+
+/// What the effect is, in the form of Antuono or another.
+pub const fn density_diffusion(antuono: bool) -> Declaration {
+    Declaration {
+        name: "density diffusion",
+        columns: if antuono {
+            &[Quantity::Vector("gradient of density")]
+        } else {
+            &[]
+        },
+        sweeps: 0,
+        limit: None,
+        dissipates: "energy of sound near the spacing",
+        source: "Antuono, Colagrossi, Marrone & Molteni 2010; Molteni & Colagrossi 2009; Fourtakas et al. 2019",
     }
 }

@@ -1,8 +1,9 @@
 //! Laminar viscosity, in two forms.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm};
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, Real, dot};
+use crate::step::Limit;
 use crate::sweep::{Other, Pair, Splat, Tally, Uses, relative_velocity};
 use nalgebra::SMatrix;
 
@@ -154,3 +155,13 @@ pub fn fastest_decay<const D: usize>(
     }
     fastest
 }
+
+/// What the effect is.
+pub const LAMINAR_VISCOSITY: Declaration = Declaration {
+    name: "laminar viscosity",
+    columns: &[],
+    sweeps: 0,
+    limit: Some(Limit::Viscous),
+    dissipates: "kinetic energy: 2 μ S:S per volume",
+    source: "Morris, Fox & Zhu 1997; Monaghan & Gingold 1983",
+};

@@ -4,7 +4,7 @@
 //! order, not exactly. Choose it for flows without violent free surfaces (vortices, channels), and where pressure turns
 //! negative.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm, Quantity};
 use crate::kernel::KernelName;
 use crate::simd::{Lanes, Real};
 use crate::sweep::{Other, Own, Pair, Splat, Sums, Tally, Uses};
@@ -142,3 +142,13 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
         }
     }
 }
+
+/// What the effect is.
+pub const PARTICLE_SHIFTING: Declaration = Declaration {
+    name: "particle shifting",
+    columns: &[Quantity::Vector("shift")],
+    sweeps: 0,
+    limit: None,
+    dissipates: "",
+    source: "Sun, Colagrossi, Marrone, Antuono & Zhang 2017; Lind, Xu, Stansby & Rogers 2012",
+};

@@ -1,7 +1,8 @@
 //! Pressure.
 
-use super::PairTerm;
+use super::{Declaration, PairTerm};
 use crate::simd::{Lanes, Real};
+use crate::step::Limit;
 use crate::sweep::{Other, Pair, Splat, Tally, Uses};
 
 /// Force density of the pressure, `-Σ V_j (p_i + p_j) ∇W_ij`: the form that is variationally consistent with the
@@ -29,3 +30,13 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Pressure {
         tally.push(-((own.pressure() + other.pressure()) * pair.slope));
     }
 }
+
+/// What the effect is.
+pub const PRESSURE: Declaration = Declaration {
+    name: "pressure",
+    columns: &[],
+    sweeps: 1,
+    limit: Some(Limit::Acoustic),
+    dissipates: "",
+    source: "Bonet & Lok 1999",
+};

@@ -376,7 +376,10 @@ impl PySimulation {
             entry.set_item("on", effect.on)?;
             entry.set_item("columns", effect.columns)?;
             entry.set_item("bytes_per_particle", effect.bytes_per_particle)?;
+            entry.set_item("sweeps", effect.sweeps)?;
             entry.set_item("dt_limit", effect.limit.map(|l| l.name()))?;
+            entry.set_item("dissipates", effect.dissipates)?;
+            entry.set_item("source", effect.source)?;
             list.append(entry)?;
         }
         Ok(list)

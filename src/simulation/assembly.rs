@@ -1,4 +1,5 @@
-//! From a configuration to the passes of a step: the one place that knows which effects there are.
+//! From a configuration to the passes of a step: which pair terms the two sweeps fuse (`catalogue.rs` has the list of all
+//! effects, and those with stages of their own).
 
 use super::config::{Config, DiffusionForm, EosName, ShiftingForm, ViscosityForm};
 use super::solver::{Body, Solver};

@@ -208,6 +208,16 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let b = &self.budget;
         let budget = b.taken.iter().chain(&b.power).chain([&b.time]);
         put("budget", Entry::Reals(budget.copied().collect()));
+        if !self.stages.is_empty() {
+            let (longest, limit) = self
+                .limits
+                .stages
+                .unwrap_or((f64::INFINITY, Limit::Acoustic));
+            put(
+                "stages",
+                Entry::Reals(vec![longest, f64::from(limit as u8)]),
+            );
+        }
         let mut counters = vec![
             self.step,
             u64::from(self.primed),
@@ -296,6 +306,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.budget.taken.copy_from_slice(&b[..ENTRIES]);
         self.budget.power.copy_from_slice(&b[ENTRIES..2 * ENTRIES]);
         self.budget.time = b[2 * ENTRIES];
+        if !self.stages.is_empty() {
+            let stages = from.reals("stages", 2)?;
+            self.limits.stages = Limit::ALL.get(stages[1] as usize).map(|l| (stages[0], *l));
+        }
         let c = from.integers("counters", 5 + Limit::ALL.len())?;
         self.step = c[0];
         self.primed = c[1] != 0;

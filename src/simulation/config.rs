@@ -1,5 +1,6 @@
 //! What a simulation is told, all numbers resolved.
 
+use crate::effects::{HerschelBulkleyConfig, TurbulenceConfig};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::prescribed::{MotionConfig, SignalConfig};
@@ -50,6 +51,12 @@ pub struct Config {
     /// Laminar viscosity.
     #[serde(default)]
     pub laminar_viscosity: Option<LaminarViscosityConfig>,
+    /// Turbulence below the particle scale.
+    #[serde(default)]
+    pub turbulence: Option<TurbulenceConfig>,
+    /// A liquid with yield stress.
+    #[serde(default)]
+    pub herschel_bulkley: Option<HerschelBulkleyConfig>,
     /// Density diffusion.
     #[serde(default)]
     pub density_diffusion: Option<DensityDiffusionConfig>,
@@ -231,6 +238,17 @@ impl Config {
         }
         if let Some(v) = self.laminar_viscosity {
             not_negative("laminar_viscosity.kinematic", v.kinematic)?;
+        }
+        if let Some(t) = self.turbulence {
+            not_negative("turbulence.smagorinsky", t.smagorinsky)?;
+        }
+        if let Some(v) = self.herschel_bulkley {
+            not_negative("herschel_bulkley.yield_stress", v.yield_stress)?;
+            not_negative("herschel_bulkley.consistency", v.consistency)?;
+            positive("herschel_bulkley.index", v.index)?;
+            if let Some(bound) = v.max_viscosity {
+                positive("herschel_bulkley.max_viscosity", bound)?;
+            }
         }
         if let Some(d) = self.density_diffusion {
             not_negative("density_diffusion.delta", d.delta)?;

@@ -73,8 +73,14 @@ pub struct EffectState {
     pub columns: Vec<&'static str>,
     /// Their bytes per particle.
     pub bytes_per_particle: usize,
+    /// Sweeps over pairs of its own in each step.
+    pub sweeps: usize,
     /// The time-step criterion that it brings.
     pub limit: Option<Limit>,
+    /// What it turns into heat; empty for nothing.
+    pub dissipates: &'static str,
+    /// Where its formula comes from.
+    pub source: &'static str,
 }
 
 /// What every solver can do, whatever its dimension and precision.

@@ -2,9 +2,9 @@
 
 use super::engine::{BodyState, EffectState, Status};
 use super::solver::{Body, Solver};
+use crate::effects::Declaration;
 use crate::eos::EquationOfState;
 use crate::simd::Real;
-use crate::step::Limit;
 
 impl<R: Real, const D: usize> Solver<R, D> {
     /// The arrays of a body in the order of its ids.
@@ -75,56 +75,35 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if let Some(boundary) = &self.boundary {
             groups.push(("wall surface", boundary.bytes()));
         }
+        let stages: usize = self.stages.iter().map(|s| s.bytes()).sum();
+        if stages > 0 {
+            groups.push(("stages", stages));
+        }
         groups.push(("buffers", self.sweeper.bytes()));
         groups.push(("guard", self.guard.bytes()));
         groups
     }
 
     pub(super) fn effects(&self) -> Vec<EffectState> {
-        let c = &self.config;
-        let real = size_of::<R>();
-        let effect = |name, on| EffectState {
-            name,
+        let known = super::catalogue::effects(&self.config, self.wall.is_some());
+        let state = |(about, on): (Declaration, bool)| EffectState {
+            name: about.name,
             on,
-            columns: Vec::new(),
-            bytes_per_particle: 0,
-            limit: None,
+            columns: if on {
+                about.columns.iter().map(|c| c.name()).collect()
+            } else {
+                Vec::new()
+            },
+            bytes_per_particle: if on {
+                about.columns.iter().map(|c| c.numbers(D)).sum::<usize>() * size_of::<R>()
+            } else {
+                0
+            },
+            sweeps: if on { about.sweeps } else { 0 },
+            limit: about.limit.filter(|_| on),
+            dissipates: about.dissipates,
+            source: about.source,
         };
-        let gradient = self.fluid.gradient.is_some();
-        vec![
-            EffectState {
-                limit: Some(Limit::Acoustic),
-                ..effect("pressure", true)
-            },
-            EffectState {
-                limit: Some(Limit::Force),
-                ..effect("gravity", c.gravity.is_some())
-            },
-            effect("artificial viscosity", c.artificial_viscosity.is_some()),
-            EffectState {
-                limit: c.laminar_viscosity.map(|_| Limit::Viscous),
-                ..effect("laminar viscosity", c.laminar_viscosity.is_some())
-            },
-            EffectState {
-                columns: if gradient {
-                    vec!["gradient of density"]
-                } else {
-                    Vec::new()
-                },
-                bytes_per_particle: if gradient { D * real } else { 0 },
-                ..effect("density diffusion", c.density_diffusion.is_some())
-            },
-            effect("acoustic damper", c.acoustic_damper.is_some()),
-            EffectState {
-                columns: if c.shifting.is_some() {
-                    vec!["shift"]
-                } else {
-                    Vec::new()
-                },
-                bytes_per_particle: if c.shifting.is_some() { D * real } else { 0 },
-                ..effect("particle shifting", c.shifting.is_some())
-            },
-            effect("walls", self.wall.is_some()),
-        ]
+        known.into_iter().map(state).collect()
     }
 }

@@ -3,6 +3,7 @@
 mod assembly;
 mod boundary;
 mod budget;
+mod catalogue;
 mod checkpoint;
 mod config;
 mod crowding;

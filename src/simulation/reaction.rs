@@ -43,7 +43,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let contact = Contact::wall(c.spacing, D, c.sound_speed, c.reference_density);
         let terms = (Pressure, (contact, friction));
         let single = Single::<D>::new(self.kernel, c.smoothing_length);
-        let cells = &wall.cells;
+        let (cells, stages) = (&wall.cells, &self.stages);
         let per_cell: Vec<[f64; 6]> = (0..cells.count())
             .into_par_iter()
             .map(|cell| {
@@ -61,9 +61,16 @@ impl<R: Real, const D: usize> Solver<R, D> {
                                 x[a] - self.fluid.position[a][j] - run.shift[a]
                             });
                             if single.reaches(&d) {
-                                let f = single.vector(&terms, &d, &own, &self.fluid_fields(j));
+                                let other = self.fluid_fields(j);
+                                let f = single.vector(&terms, &d, &own, &other);
                                 for a in 0..D {
                                     force[a] += f[a];
+                                }
+                                for stage in stages {
+                                    let f = stage.reaction(&single, &d, &own, &other, j);
+                                    for a in 0..D {
+                                        force[a] += f[a];
+                                    }
                                 }
                             }
                         }

@@ -7,7 +7,7 @@ use super::gravity::Gravity;
 use super::guard::Guard;
 use super::retry::Trouble;
 use super::timers::{Phase, Timers};
-use crate::effects::fastest_decay;
+use crate::effects::{Stage, fastest_decay};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
@@ -50,6 +50,8 @@ pub struct Solver<R, const D: usize> {
     /// Where gravity depends on time.
     pub(super) gravity: Option<Gravity<D>>,
     pub(super) sweeper: Sweeper<R>,
+    /// Effects that few scenes call for, behind the sweep of forces.
+    pub(super) stages: Vec<Box<dyn Stage<R, D>>>,
     pub(super) limits: Limits,
     pub(super) kernel: KernelName,
     pub(super) time: f64,
@@ -124,6 +126,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
         let guard = Guard::new(&config, fluid, wall);
         let mut solver = Solver {
+            stages: super::catalogue::stages(&config, fluid.mass.len()),
             gravity: Gravity::new(&config)?,
             motion: Motion {
                 gravity: config.gravity(),
@@ -142,6 +145,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     let decay = fastest_decay::<D>(config.kernel, h, config.spacing, angular);
                     VISCOUS / (v.kinematic * decay)
                 }),
+                stages: None,
                 fixed: config.time_step,
             },
             kernel: config.kernel,
@@ -245,6 +249,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
         self.update_walls();
         self.sum_forces();
+        self.run_stages();
         self.motion.second_half(&mut self.fluid, 0.0);
         self.sum_density_rates(0.0);
         self.state = self.motion.finish(&mut self.fluid, 0.0);
@@ -271,6 +276,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.move_walls(self.time + 0.5 * dt);
         self.update_walls();
         self.sum_forces();
+        self.run_stages();
         self.audit(dt);
         let speed = self.motion.second_half(&mut self.fluid, dt);
         self.travelled += 0.5 * dt * speed;

@@ -12,6 +12,8 @@ pub enum Phase {
     Walls,
     /// The sweep of forces.
     Forces,
+    /// Effects that few scenes call for.
+    Stages,
     /// The sweep of continuity.
     Continuity,
     /// Whole-array stages.
@@ -25,10 +27,11 @@ pub enum Phase {
 }
 
 /// Names of the phases, in their order.
-pub const PHASES: [&str; 8] = [
+pub const PHASES: [&str; 9] = [
     "sort",
     "walls",
     "forces",
+    "stages",
     "continuity",
     "integrate",
     "shift",

@@ -60,6 +60,8 @@ pub struct Limits {
     pub smoothing_length: f64,
     /// The longest step that viscosity allows, in s; infinite without.
     pub viscous: f64,
+    /// The longest step that the stages allow, in s, and which criterion says so.
+    pub stages: Option<(f64, Limit)>,
     /// A fixed time step in s.
     pub fixed: Option<f64>,
 }
@@ -74,6 +76,11 @@ impl Limits {
         let mut best = (self.courant * h / (sound_speed + speed), Limit::Acoustic);
         if self.viscous < best.0 {
             best = (self.viscous, Limit::Viscous);
+        }
+        if let Some(stages) = self.stages
+            && stages.0 < best.0
+        {
+            best = stages;
         }
         let force = 0.25 * (h / acceleration).sqrt();
         if force < best.0 {

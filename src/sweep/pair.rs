@@ -10,11 +10,13 @@ pub mod slot {
     pub const VOLUME: usize = 0;
     /// Pressure.
     pub const PRESSURE: usize = 1;
+    /// Dynamic viscosity, in sweeps that read no pressure.
+    pub const VISCOSITY: usize = 1;
     /// `ρ/ρ0 - 1`.
     pub const CONDENSATION: usize = 2;
     /// First component of the velocity.
     pub const VELOCITY: usize = 3;
-    /// First component of the gradient of the condensation.
+    /// First component of the gradient of the condensation, or of another vector.
     pub const GRADIENT: usize = 6;
     /// Rate of density.
     pub const RATE: usize = 9;
@@ -65,6 +67,11 @@ macro_rules! fields {
         pub fn pressure(&self) -> L {
             self.$field(slot::PRESSURE)
         }
+        /// Dynamic viscosity in Pa s, where a sweep reads that.
+        #[inline(always)]
+        pub fn viscosity(&self) -> L {
+            self.$field(slot::VISCOSITY)
+        }
         /// `ρ/ρ0 - 1`.
         #[inline(always)]
         pub fn condensation(&self) -> L {
@@ -80,7 +87,7 @@ macro_rules! fields {
         pub fn rate(&self) -> L {
             self.$field(slot::RATE)
         }
-        /// Renormalised gradient of the condensation in 1/m.
+        /// Renormalised gradient of the condensation in 1/m, or what else a sweep has there.
         #[inline(always)]
         pub fn gradient(&self) -> [L; D] {
             std::array::from_fn(|a| self.$field(slot::GRADIENT + a))

@@ -18,6 +18,8 @@ pub struct Sums<L, const D: usize> {
     pub gradient: [L; D],
     /// A symmetric matrix: xx, yy, xy, then zz, yz, xz.
     pub moment: [L; 6],
+    /// Any matrix; no pass over pairs uses it.
+    pub matrix: [[L; D]; D],
 }
 
 /// Which of them a pass uses.
@@ -74,6 +76,7 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
             vector: [L::zero(); D],
             gradient: [L::zero(); D],
             moment: [L::zero(); 6],
+            matrix: [[L::zero(); D]; D],
         }
     }
 
@@ -96,6 +99,7 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
             vector: self.vector.map(L::sum),
             gradient: self.gradient.map(L::sum),
             moment: self.moment.map(L::sum),
+            matrix: self.matrix.map(|row| row.map(L::sum)),
         }
     }
 }

@@ -20,6 +20,7 @@ pub use semi_analytical::SemiAnalytical;
 pub use surface::{Foot, Surface};
 pub use wall_factor::{Share, WallFactor};
 
+use crate::effects::{Declaration, Quantity};
 use crate::eos::{AnyEos, EquationOfState};
 use crate::simd::dot;
 use serde::{Deserialize, Serialize};
@@ -80,3 +81,23 @@ fn follow_pressure(eos: &AnyEos, at_rest: f64, pressure: f64, mass: f64) -> (f64
 fn head<const D: usize>(density: f64, gravity: &[f64; D], way: &[f64; D]) -> f64 {
     density * dot(gravity, way)
 }
+
+/// What the effect is.
+pub const WALLS: Declaration = Declaration {
+    name: "walls",
+    columns: &[],
+    sweeps: 1,
+    limit: None,
+    dissipates: "",
+    source: "Adami, Hu & Adams 2012; Crespo, Gómez-Gesteira & Dalrymple 2007",
+};
+
+/// Walls in prescribed motion.
+pub const MOVING_WALLS: Declaration = Declaration {
+    name: "moving walls",
+    columns: &[Quantity::Vector("acceleration of walls")],
+    sweeps: 0,
+    limit: None,
+    dissipates: "",
+    source: "",
+};

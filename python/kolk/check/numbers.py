@@ -60,6 +60,10 @@ def time_step(scene: Scene) -> tuple[float, str]:
     viscosity = scene.fluid[0].viscosity
     if viscosity is not None and viscosity.laminar is not None:
         limits.append((0.125 * h**2 / viscosity.laminar, "viscosity"))
+    yielding = None if viscosity is None else viscosity.herschel_bulkley
+    if yielding is not None and yielding.max_viscosity is not None:
+        stiffest = yielding.max_viscosity / scene.fluid[0].density
+        limits.append((0.045 * h**2 / stiffest, "viscosity"))
     gravity = scene.gravity_at_start
     if gravity is not None and any(gravity):
         limits.append((0.25 * math.sqrt(h / float(np.linalg.norm(gravity))), "gravity"))

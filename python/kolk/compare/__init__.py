@@ -15,6 +15,7 @@ from .band import align, compare_band
 from .fields import compare_channel, compare_hydrostatic, compare_taylor_green
 from .front import ALIGNED_AT, compare_front
 from .norms import Norms, norms
+from .profiles import compare_slump, compare_yielding_channel
 from .result import ComparisonResult
 from .series import compare_series
 from .waves import compare_standing_wave, wave_of
@@ -98,6 +99,10 @@ def _analytic(run: records.RunLike, asked: Comparison) -> list[ComparisonResult]
             drive=drive,
             origin=given.get("origin", 0.0),
         )
+    if asked.reference == "herschel_bulkley":
+        return compare_yielding_channel(last, **given)
+    if asked.reference == "slump":
+        return compare_slump(last, float(run.scene.spacing), **given)
     if asked.reference == "hydrostatic_pressure":
         return compare_hydrostatic(
             last,
@@ -121,7 +126,9 @@ __all__ = [
     "compare_front",
     "compare_hydrostatic",
     "compare_series",
+    "compare_slump",
     "compare_standing_wave",
     "compare_taylor_green",
+    "compare_yielding_channel",
     "norms",
 ]

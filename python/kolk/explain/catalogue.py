@@ -157,7 +157,7 @@ CATALOGUE: tuple[Entry, ...] = (
         _no("laminar_viscosity"),
     ),
     Entry(
-        "Herschel-Bulkley liquid",
+        "Herschel-Bulkley",
         "friction of a liquid with yield stress",
         "sweeps of its own",
         _viscosity("herschel_bulkley"),

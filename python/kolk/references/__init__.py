@@ -6,9 +6,15 @@ in SI units, each with its formula and its source in the docstring.
 
 from __future__ import annotations
 
-from .channel import couette, poiseuille
+from .channel import couette, herschel_bulkley, poiseuille
 from .collapse import DamBreakStates, ritter, stoker, stoker_states
-from .drops import DropHistory, oscillating_drop, oscillating_drop_period, stretching_drop
+from .drops import (
+    DropHistory,
+    oscillating_drop,
+    oscillating_drop_period,
+    stretching_drop,
+)
+from .slump import slump
 from .tables import Reference, load, names
 from .vortex import taylor_green, taylor_green_decay_rate
 from .waves import StandingWave, hydrostatic_pressure, standing_wave
@@ -19,6 +25,7 @@ __all__ = [
     "Reference",
     "StandingWave",
     "couette",
+    "herschel_bulkley",
     "hydrostatic_pressure",
     "load",
     "names",
@@ -26,6 +33,7 @@ __all__ = [
     "oscillating_drop_period",
     "poiseuille",
     "ritter",
+    "slump",
     "standing_wave",
     "stoker",
     "stoker_states",

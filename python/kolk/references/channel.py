@@ -1,4 +1,5 @@
-"""Start-up flows between two plates: Poiseuille (body force) and Couette (sliding plate)."""
+"""Flows between two plates: the start-up under a body force (Poiseuille) or by a sliding plate
+(Couette), and the steady flow of a liquid with yield stress (Herschel and Bulkley)."""
 
 from __future__ import annotations
 
@@ -51,3 +52,32 @@ def couette(
     return np.asarray(
         speed * height / width + np.sin(np.pi * height[..., None] * n / width) @ weight
     )
+
+
+def herschel_bulkley(
+    y: npt.ArrayLike,
+    *,
+    width: float,
+    density: float,
+    acceleration: float,
+    yield_stress: float,
+    consistency: float,
+    index: float,
+) -> FloatArray:
+    """Velocity of the steady flow, m/s, at heights ``y`` (m, 0 to ``width``) between two plates.
+
+    A body force (m/s^2) drives a liquid with the law ``tau = tau_y + K shear_rate^n``. With the
+    distance r from the middle, half the width H, and the plug's half width r_p = tau_y/(rho F)::
+
+        u = n/(n+1) (rho F/K)^(1/n) [(H - r_p)^(1/n + 1) - max(r - r_p, 0)^(1/n + 1)]
+
+    at rest where the wall's stress rho F H does not reach tau_y. Source: Bird, Armstrong and
+    Hassager, Dynamics of Polymeric Liquids 1 (1987), ch. 4; Bingham's liquid for n = 1.
+    """
+    drive = density * acceleration
+    plug = yield_stress / drive
+    power = 1.0 / index + 1.0
+    r = np.abs(np.asarray(y, np.float64) - 0.5 * width)
+    sheared = np.maximum(0.5 * width - plug, 0.0) ** power - np.maximum(r - plug, 0.0) ** power
+    scale = index / (index + 1.0) * (drive / consistency) ** (1.0 / index)
+    return np.asarray(scale * np.maximum(sheared, 0.0))

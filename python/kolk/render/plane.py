@@ -44,15 +44,15 @@ class Extent:
 
 
 def extent(frames: Sequence[FrameLike], spacing: float) -> Extent:
-    """What to show: the walls, and the fluid as far as it stays near.
+    """What to show: the walls, wherever they move, and the fluid as far as it stays near.
 
     Without walls the fluid of the frames given. With walls, fluid that has left them by more than
     a quarter of their size is cut off: a drop that flies away must not shrink the picture.
     """
     low, high = _box([f.position[f.rows("fluid")] for f in frames])
-    walls = frames[0].position[frames[0].rows("wall")]
-    if len(walls):
-        wall_low, wall_high = walls.min(axis=0), walls.max(axis=0)
+    walls = [f.position[f.rows("wall")] for f in frames]
+    if any(len(w) for w in walls):
+        wall_low, wall_high = _box(walls)
         slack = 0.25 * (wall_high - wall_low)
         low = np.minimum(np.maximum(low, wall_low - slack), wall_low)
         high = np.maximum(np.minimum(high, wall_high + slack), wall_high)

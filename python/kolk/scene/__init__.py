@@ -18,9 +18,9 @@ from .parts import (
     Periodic,
     PressureProbe,
     Probe,
-    Viscosity,
     Wall,
 )
+from .rheology import HerschelBulkley, Viscosity
 from .shapes import Box, Cylinder, Disc, Polygon, Shape, Sphere, Tank
 from .template import template
 
@@ -37,6 +37,7 @@ __all__ = [
     "ForceProbe",
     "FrontProbe",
     "Function",
+    "HerschelBulkley",
     "LevelProbe",
     "Mesh",
     "Numerics",

@@ -13,13 +13,17 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     """The engine's configuration as a JSON-ready dict."""
     fluid, numerics = scene.fluid[0], scene.numerics
     viscosity = fluid.viscosity
-    artificial = laminar = None
+    artificial = laminar = yielding = turbulence = None
     if viscosity is not None and viscosity.artificial is not None:
         artificial = {"alpha": viscosity.artificial, "beta": viscosity.beta}
     if viscosity is not None and viscosity.laminar is not None:
         form = automatic.laminar_form(scene)
         assert form is not None, "there is a laminar viscosity"
         laminar = {"kinematic": viscosity.laminar, "form": form.value}
+    if viscosity is not None and viscosity.herschel_bulkley is not None:
+        yielding = viscosity.herschel_bulkley.model_dump()
+    if viscosity is not None and viscosity.turbulence is not None:
+        turbulence = {"smagorinsky": viscosity.turbulence}
     diffusion = shifting = None
     wall: dict[str, Any] | None = None
     form_of_diffusion = automatic.density_diffusion(scene).value
@@ -55,6 +59,8 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "background_pressure": numerics.background_pressure,
         "artificial_viscosity": artificial,
         "laminar_viscosity": laminar,
+        "turbulence": turbulence,
+        "herschel_bulkley": yielding,
         "density_diffusion": diffusion,
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,

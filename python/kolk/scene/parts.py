@@ -30,6 +30,7 @@ from .base import (
 from .composed import ShapeTable
 from .expression import Expression
 from .motion import Motion
+from .rheology import Viscosity
 
 FloatArray = npt.NDArray[np.float64]
 OfPosition = Callable[[FloatArray], FloatArray]
@@ -144,28 +145,6 @@ class _Body(Model):
             found = "is missing" if self.shape is None else "found both 'shape' and 'particles'"
             raise SceneError(
                 problems=[Problem(("shape",), f"{found}: give a shape, or own particles instead")]
-            )
-        return self
-
-
-class Viscosity(Model):
-    """Artificial viscosity, laminar viscosity, or both."""
-
-    artificial: NotNegative | None = Field(
-        default=None, description="Monaghan's alpha, 0.01 to 0.1"
-    )
-    beta: NotNegative = Field(default=0.0, description="Monaghan's beta: only for shocks")
-    laminar: Positive | None = Field(default=None, description="kinematic viscosity, m^2/s")
-
-    @model_validator(mode="after")
-    def _something(self) -> Viscosity:
-        if self.artificial is None and self.laminar is None:
-            raise SceneError(
-                problems=[
-                    Problem(
-                        (), "is empty: give 'artificial' or 'laminar', or leave it out for none"
-                    )
-                ]
             )
         return self
 

@@ -1,0 +1,104 @@
+//! The list of effects, and from a configuration to those with stages of their own: one line each.
+
+use super::config::{Config, DiffusionForm};
+use super::solver::Solver;
+use super::timers::Phase;
+use crate::effects::{
+    ACOUSTIC_DAMPER, ARTIFICIAL_VISCOSITY, Around, CONTACT, Declaration, GRAVITY, HerschelBulkley,
+    LAMINAR_VISCOSITY, PARTICLE_SHIFTING, PRESSURE, Rheology, Smagorinsky, Stage,
+    VariableViscosity, density_diffusion, fastest_decay,
+};
+use crate::simd::Real;
+use crate::step::Limit;
+use crate::walls::{MOVING_WALLS, Slip, WALLS};
+
+/// The effects with sweeps of their own that the configuration calls for: one line each.
+pub(super) fn stages<R: Real, const D: usize>(
+    config: &Config,
+    n: usize,
+) -> Vec<Box<dyn Stage<R, D>>> {
+    let c = config;
+    let mut stages: Vec<Box<dyn Stage<R, D>>> = Vec::new();
+    let mut add = |stage: Option<Box<dyn Stage<R, D>>>| stages.extend(stage);
+    add(c
+        .turbulence
+        .map(|t| thickened(c, n, Smagorinsky::new(t, c.spacing, c.reference_density))));
+    add(c
+        .herschel_bulkley
+        .map(|v| thickened(c, n, HerschelBulkley::new(v, costless_viscosity::<D>(c)))));
+    stages
+}
+
+/// A liquid whose viscosity depends on the flow.
+fn thickened<R: Real, M: Rheology, const D: usize>(
+    c: &Config,
+    n: usize,
+    rheology: M,
+) -> Box<dyn Stage<R, D>> {
+    let (h, rho) = (c.smoothing_length, c.reference_density);
+    Box::new(VariableViscosity::new(
+        rheology,
+        n,
+        h,
+        rho,
+        c.wall.is_some_and(|w| w.slip == Slip::No),
+        fastest_decay::<D>(c.kernel, h, c.spacing, true),
+        c.laminar_viscosity.map_or(0.0, |v| v.kinematic * rho),
+    ))
+}
+
+/// The viscosity in Pa s whose step is as long as that of sound.
+fn costless_viscosity<const D: usize>(c: &Config) -> f64 {
+    let h = c.smoothing_length;
+    let decay = fastest_decay::<D>(c.kernel, h, c.spacing, true);
+    c.reference_density * c.sound_speed / (h * decay)
+}
+
+/// Every effect that kolk knows, and whether the configuration calls for it.
+pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
+    let gravity = c.gravity.is_some() || !c.gravity_over_time.is_empty();
+    let antuono = c
+        .density_diffusion
+        .is_some_and(|d| d.form == DiffusionForm::Antuono);
+    vec![
+        (PRESSURE, true),
+        (GRAVITY, gravity),
+        (ARTIFICIAL_VISCOSITY, c.artificial_viscosity.is_some()),
+        (LAMINAR_VISCOSITY, c.laminar_viscosity.is_some()),
+        (HerschelBulkley::DECLARATION, c.herschel_bulkley.is_some()),
+        (Smagorinsky::DECLARATION, c.turbulence.is_some()),
+        (density_diffusion(antuono), c.density_diffusion.is_some()),
+        (ACOUSTIC_DAMPER, c.acoustic_damper.is_some()),
+        (PARTICLE_SHIFTING, c.shifting.is_some()),
+        (CONTACT, true),
+        (WALLS, walls),
+        (MOVING_WALLS, !c.motion.is_empty()),
+    ]
+}
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// Effects that few scenes call for add to the acceleration, and may limit the next step.
+    pub(super) fn run_stages(&mut self) {
+        if self.stages.is_empty() {
+            return;
+        }
+        let mut least: Option<(f64, Limit)> = None;
+        for stage in &mut self.stages {
+            stage.run(Around {
+                grid: &self.grid,
+                sweeper: &self.sweeper,
+                kernel: self.kernel,
+                fluid: &mut self.fluid,
+                wall: self.wall.as_ref(),
+            });
+            let longest = stage.longest_step();
+            if let Some(limit) = stage.declaration().limit
+                && least.is_none_or(|l| longest < l.0)
+            {
+                least = Some((longest, limit));
+            }
+        }
+        self.limits.stages = least;
+        self.timers.book(Phase::Stages);
+    }
+}
