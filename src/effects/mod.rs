@@ -18,7 +18,7 @@ pub use continuity::Continuity;
 pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni};
 pub use dissipation::{Diffusion, Dissipation, Laminar, POWERS};
 pub use laminar_viscosity::{MonaghanGingold, Morris, fastest_decay};
-pub use particle_shifting::Shift;
+pub use particle_shifting::{Shift, Surroundings, lattice_concentration, sun_strength};
 pub use pressure::Pressure;
 
 use crate::simd::{Lanes, Real};
