@@ -16,9 +16,11 @@ const PAIRING: f64 = 0.2;
 const SURFACE: f64 = 0.4;
 const INTERIOR: f64 = 0.75;
 
-/// Rate in units of `c0/h` at which density follows the concentration of particles: slow beside sound, so that it makes
-/// no pressure of its own, and fast beside the flow.
-const FOLLOWING: f64 = 0.005;
+/// Rate in units of `U/h` at which density follows the concentration of particles, with the largest speed `U` of the
+/// flow: shifts go with the same speed, and fluid at rest is left alone.
+const FOLLOWING: f64 = 0.05;
+/// Least eigenvalue from which a particle is wholly surrounded by others.
+const SURROUNDED: f64 = 0.95;
 
 /// Coefficient of `Σ V_j [1 + 0.2 (W_ij/W(Δp))⁴] ∇W_ij` in m²: `½ U Δt H²/(2Δp)`, with the support radius `H`, the largest
 /// speed `U` of the flow, and `m_j/(ρ_i + ρ_j)` taken as half the volume (Sun, Colagrossi, Marrone, Antuono & Zhang 2017,
@@ -53,8 +55,6 @@ pub struct Surroundings {
     pub h: f64,
     /// Spacing in m.
     pub spacing: f64,
-    /// Speed of sound in m/s.
-    pub sound_speed: f64,
     /// Concentration of the lattice.
     pub concentration: f64,
     /// Whether there is a free surface to keep.
@@ -86,36 +86,36 @@ impl Shift {
         Shift {
             strength: sun_strength(support, around.spacing, speed, dt),
             limit: 0.5 * speed * dt,
-            ..Self::none::<D>(around)
+            ..Self::none::<D>(around, speed)
         }
     }
 
     /// Lind, Xu, Stansby & Rogers 2012 with the strength `2 h |u_i| Δt` of Skillen, Lind, Stansby & Rogers 2013;
     /// limited to `0.2 h`.
-    pub fn lind<const D: usize>(around: &Surroundings, dt: f64) -> Self {
+    pub fn lind<const D: usize>(around: &Surroundings, speed: f64, dt: f64) -> Self {
         Shift {
             strength_per_speed: 2.0 * around.h * dt,
             limit: 0.2 * around.h,
-            ..Self::none::<D>(around)
+            ..Self::none::<D>(around, speed)
         }
     }
 
-    fn none<const D: usize>(around: &Surroundings) -> Self {
+    fn none<const D: usize>(around: &Surroundings, speed: f64) -> Self {
         Shift {
             strength: 0.0,
             strength_per_speed: 0.0,
             limit: 0.0,
             inverse_weight: 1.0 / around.kernel.value(D, around.spacing, around.h),
             free_surface: around.free_surface,
-            following: FOLLOWING * around.sound_speed / around.h,
+            following: FOLLOWING * speed / around.h,
             concentration: around.concentration,
         }
     }
 
     /// Rate of density over `ρ0` that takes it to the concentration `c_i = -Σ V_j r_ij·∇W_ij / D` of the particles
-    /// around: `0.005 (c0/h) (c_i - c)` with that of the lattice, `c`. Where there is a free surface the sum is the trace
-    /// of the moment matrix, and particles near the surface, where it says nothing of the spacing, are left out; else it
-    /// is among the pairs' terms but for its last part. A relaxed form of taking density anew from the kernel sum
+    /// around: `0.05 (U/h) (c_i - c)` with that of the lattice, `c`. Where there is a free surface the sum is the trace of
+    /// the moment matrix, and particles near the surface, where it says nothing of the spacing, are left out; else it is
+    /// among the pairs' terms but for its last part. A relaxed form of taking density anew from the kernel sum
     /// (Colagrossi & Landrini 2003; Zhang, Hu & Adams 2017).
     #[inline(always)]
     pub fn source<R: Real, const D: usize>(&self, sums: &Sums<R, D>) -> R {
@@ -124,10 +124,10 @@ impl Shift {
         if !self.free_surface {
             return -following * at_rest;
         }
-        if sums.least_moment() < R::from_f64(INTERIOR) {
-            return R::default();
-        }
-        following * (sums.trace() * R::from_f64(1.0 / D as f64) - at_rest)
+        let (low, high) = (R::from_f64(INTERIOR), R::from_f64(SURROUNDED));
+        let surrounded = (Lanes::min(sums.least_moment(), high) - low) / (high - low);
+        let excess = sums.trace() * R::from_f64(1.0 / D as f64) - at_rest;
+        following * Lanes::max(surrounded, R::default()) * excess
     }
 
     /// The shift of a particle in m, from its sums.

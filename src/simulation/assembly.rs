@@ -52,7 +52,6 @@ pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm,
             kernel,
             h,
             spacing,
-            sound_speed: config.sound_speed,
             concentration: lattice_concentration::<D>(kernel, h, spacing),
             free_surface: s.free_surface,
         };
@@ -330,7 +329,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 self.run_density_rates(diffusion, Shift::sun::<D>(&around, speed, dt));
             }
             Some((ShiftingForm::Lind, around)) => {
-                self.run_density_rates(diffusion, Shift::lind::<D>(&around, dt));
+                self.run_density_rates(diffusion, Shift::lind::<D>(&around, speed, dt));
             }
         }
     }
