@@ -43,7 +43,12 @@ fn drift<const D: usize>(scene: &Scene, precision: Precision, steps: u64) -> (f6
 #[test]
 fn a_free_drop_keeps_its_momenta() {
     let viscous = json!({"laminar_viscosity": {"kinematic": 1e-3, "form": "monaghan-gingold"}});
-    for (name, changes) in [("artificial", json!({})), ("laminar", viscous)] {
+    let shifted = json!({"shifting": {"form": "sun"}});
+    for (name, changes) in [
+        ("artificial", json!({})),
+        ("laminar", viscous),
+        ("shifted", shifted),
+    ] {
         let (linear, angular) = drift::<2>(
             &free_drop::<2>(30).with(changes.clone()),
             Precision::F64,

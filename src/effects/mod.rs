@@ -27,7 +27,9 @@ pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni, densit
 pub use dissipation::{Diffusion, Dissipation, Laminar, POWERS};
 pub use herschel_bulkley::{HerschelBulkley, HerschelBulkleyConfig};
 pub use laminar_viscosity::{LAMINAR_VISCOSITY, MonaghanGingold, Morris, fastest_decay};
-pub use particle_shifting::{PARTICLE_SHIFTING, Shift};
+pub use particle_shifting::{
+    PARTICLE_SHIFTING, Shift, Surroundings, lattice_concentration, sun_strength,
+};
 pub use pressure::{PRESSURE, Pressure};
 pub use shear_rate::ShearRate;
 pub use stage::{Around, Stage};

@@ -1,7 +1,8 @@
 //! Particle shifting: moves particles a little towards where they are few, so that they stay evenly spread.
 //!
-//! The sums share the sweep of continuity. The shift is of position only: volume and angular momentum are kept to its
-//! order, not exactly. Choose it for flows without violent free surfaces (vortices, channels), and where pressure turns
+//! The sums share the sweep of continuity. Density does not feel a shift, so that the spacing of the particles would
+//! drift away from it: violent flows would swell by a third and more. A weak source of density takes it back to what
+//! the particles' concentration says, wherever that is defined; see [`Shift::source`]. Choose it for flows without violent free surfaces (vortices, channels), and where pressure turns
 //! negative.
 
 use super::{Declaration, PairTerm, Quantity};
@@ -15,6 +16,53 @@ const PAIRING: f64 = 0.2;
 const SURFACE: f64 = 0.4;
 const INTERIOR: f64 = 0.75;
 
+/// Rate in units of `U/h` at which density follows the concentration of particles under a free surface, with the largest
+/// speed `U` of the flow: shifts go with the same speed, and fluid at rest is left alone.
+const FOLLOWING: f64 = 0.1;
+/// The same without a free surface, where fluid cannot swell: it evens out what shifts leave in the pressure.
+const FOLLOWING_INSIDE: f64 = 0.03;
+/// Least eigenvalue from which a particle is wholly surrounded by others.
+const SURROUNDED: f64 = 0.95;
+
+/// Coefficient of `Σ V_j [1 + 0.2 (W_ij/W(Δp))⁴] ∇W_ij` in m²: `½ U Δt H²/(2Δp)`, with the support radius `H`, the largest
+/// speed `U` of the flow, and `m_j/(ρ_i + ρ_j)` taken as half the volume (Sun, Colagrossi, Marrone, Antuono & Zhang 2017,
+/// with the product of Courant and Mach number written as `U Δt / 2Δp`).
+pub fn sun_strength(support: f64, spacing: f64, speed: f64, dt: f64) -> f64 {
+    0.25 * speed * dt * support * support / spacing
+}
+
+/// Concentration `-Σ V_j r_ij·∇W_ij / D` of a lattice: 1 but for the sum's difference from the integral.
+pub fn lattice_concentration<const D: usize>(kernel: KernelName, h: f64, spacing: f64) -> f64 {
+    let reach = (h * kernel.support() / spacing).ceil() as i32;
+    let side = 2 * reach + 1;
+    (0..side.pow(D as u32))
+        .map(|k| {
+            let squares = (0..D).map(|a| f64::from(k / side.pow(a as u32) % side - reach).powi(2));
+            let r = squares.sum::<f64>().sqrt() * spacing;
+            if r > 0.0 && r < h * kernel.support() {
+                -kernel.gradient(D, r, h) * r * spacing.powi(D as i32) / D as f64
+            } else {
+                0.0
+            }
+        })
+        .sum()
+}
+
+/// What shifting needs to know of a simulation that does not change.
+#[derive(Clone, Copy, Debug)]
+pub struct Surroundings {
+    /// Smoothing kernel.
+    pub kernel: KernelName,
+    /// Smoothing length in m.
+    pub h: f64,
+    /// Spacing in m.
+    pub spacing: f64,
+    /// Concentration of the lattice.
+    pub concentration: f64,
+    /// Whether there is a free surface to keep.
+    pub free_surface: bool,
+}
+
 /// One step of shifting along `-Σ V_j [1 + 0.2 (W_ij/W(Δp))⁴] ∇W_ij`.
 #[derive(Clone, Copy, Debug)]
 pub struct Shift {
@@ -27,44 +75,66 @@ pub struct Shift {
     /// `1 / W(Δp)`.
     inverse_weight: f64,
     free_surface: bool,
+    /// Rate in 1/s at which density follows the concentration.
+    following: f64,
+    /// Concentration at which it rests.
+    concentration: f64,
 }
 
 impl Shift {
-    /// Sun, Colagrossi, Marrone, Antuono & Zhang 2017: `2 U h Δt`, where `U` is the largest speed of the flow; limited
-    /// to `U Δt / 2`.
-    pub fn sun<const D: usize>(
-        kernel: KernelName,
-        h: f64,
-        spacing: f64,
-        speed: f64,
-        dt: f64,
-        free_surface: bool,
-    ) -> Self {
+    /// Sun, Colagrossi, Marrone, Antuono & Zhang 2017, with [`sun_strength`]; limited to `U Δt / 2`.
+    pub fn sun<const D: usize>(around: &Surroundings, speed: f64, dt: f64) -> Self {
+        let support = around.h * around.kernel.support();
         Shift {
-            strength: 2.0 * speed * h * dt,
-            strength_per_speed: 0.0,
+            strength: sun_strength(support, around.spacing, speed, dt),
             limit: 0.5 * speed * dt,
-            inverse_weight: 1.0 / kernel.value(D, spacing, h),
-            free_surface,
+            ..Self::none::<D>(around, speed)
         }
     }
 
     /// Lind, Xu, Stansby & Rogers 2012 with the strength `2 h |u_i| Δt` of Skillen, Lind, Stansby & Rogers 2013;
     /// limited to `0.2 h`.
-    pub fn lind<const D: usize>(
-        kernel: KernelName,
-        h: f64,
-        spacing: f64,
-        dt: f64,
-        free_surface: bool,
-    ) -> Self {
+    pub fn lind<const D: usize>(around: &Surroundings, speed: f64, dt: f64) -> Self {
+        Shift {
+            strength_per_speed: 2.0 * around.h * dt,
+            limit: 0.2 * around.h,
+            ..Self::none::<D>(around, speed)
+        }
+    }
+
+    fn none<const D: usize>(around: &Surroundings, speed: f64) -> Self {
         Shift {
             strength: 0.0,
-            strength_per_speed: 2.0 * h * dt,
-            limit: 0.2 * h,
-            inverse_weight: 1.0 / kernel.value(D, spacing, h),
-            free_surface,
+            strength_per_speed: 0.0,
+            limit: 0.0,
+            inverse_weight: 1.0 / around.kernel.value(D, around.spacing, around.h),
+            free_surface: around.free_surface,
+            following: speed / around.h
+                * if around.free_surface {
+                    FOLLOWING
+                } else {
+                    FOLLOWING_INSIDE
+                },
+            concentration: around.concentration,
         }
+    }
+
+    /// Rate of density over `ρ0` that takes it to the concentration `c_i = -Σ V_j r_ij·∇W_ij / D` of the particles
+    /// around: `k (U/h) (c_i - c)` with that of the lattice, `c`. Where there is a free surface the sum is the trace of
+    /// the moment matrix, and particles near the surface, where it says nothing of the spacing, are left out; else it is
+    /// among the pairs' terms but for its last part. A relaxed form of taking density anew from the kernel sum
+    /// (Colagrossi & Landrini 2003; Zhang, Hu & Adams 2017).
+    #[inline(always)]
+    pub fn source<R: Real, const D: usize>(&self, sums: &Sums<R, D>) -> R {
+        let following = R::from_f64(self.following);
+        let at_rest = R::from_f64(self.concentration);
+        if !self.free_surface {
+            return -following * at_rest;
+        }
+        let (low, high) = (R::from_f64(INTERIOR), R::from_f64(SURROUNDED));
+        let surrounded = (Lanes::min(sums.least_moment(), high) - low) / (high - low);
+        let excess = sums.trace() * R::from_f64(1.0 / D as f64) - at_rest;
+        following * Lanes::max(surrounded, R::default()) * excess
     }
 
     /// The shift of a particle in m, from its sums.
@@ -115,10 +185,10 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
     #[inline(always)]
     fn uses(&self) -> Uses {
         Uses {
+            scalar: true,
             vector: self.free_surface,
             gradient: true,
             moment: self.free_surface,
-            ..Uses::NONE
         }
     }
 
@@ -139,6 +209,9 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
         tally.repel(pair.slope * pairing, pair);
         if self.free_surface {
             tally.moment(-pair.slope, pair);
+        } else {
+            let share = L::constant(-self.following / D as f64);
+            tally.source(share * pair.slope * pair.squared);
         }
     }
 }

@@ -23,7 +23,8 @@ pub enum Diffusion<const D: usize> {
 }
 
 /// Rate of change of density [kg/m^D/s]:
-/// `D_i = δ h c0 Σ_j V_j ψ_ij · ∇W_ij` with `ψ_ij = 2 (ρ_j - ρ_i - explained) r_ji / (r² + 0.01 h²)`.
+/// `D_i = δ h c0 Σ_j V_j ψ_ij · ∇W_ij` with `ψ_ij = 2 (ρ_j - ρ_i - explained) r_ji / r²`: finite at no
+/// distance, where `r_ji · ∇W_ij / r²` is `-F_ij`.
 ///
 /// Antisymmetric in a pair for the first two forms: `Σ V_i D_i = 0`.
 pub fn density_diffusion<const D: usize>(
@@ -56,13 +57,11 @@ pub fn density_diffusion<const D: usize>(
         }
     };
     let scale = 2.0 * delta * cloud.h * sound_speed;
-    let softening = 0.01 * cloud.h * cloud.h;
     cloud.map(|i| {
         let mut sum = 0.0;
-        cloud.for_each_neighbour(i, |j, d, r, slope| {
+        cloud.for_each_neighbour(i, |j, d, _, slope| {
             let difference = cloud.density[j] - cloud.density[i] - explained(i, j, &d);
-            // r_ji · ∇W_ij = -F_ij r²
-            sum -= cloud.volume[j] * difference * slope * (r * r / (r * r + softening));
+            sum -= cloud.volume[j] * difference * slope;
         });
         scale * sum
     })

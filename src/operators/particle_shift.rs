@@ -2,13 +2,14 @@
 
 use super::free_surface::norm;
 use super::{Cloud, free_surface};
+use crate::effects::sun_strength;
 use rayon::prelude::*;
 
 /// How far particles move down the gradient of their concentration.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shift {
-    /// `-½ dt U (2h)²/Δp Σ_j [1 + R (W/W(Δp))⁴] ∇W m_j/(ρ_i + ρ_j)`, `R = 0.2`, at most `½ U dt` (Sun et al. 2017, with
-    /// the product of CFL and Mach number written as `U dt / (2Δp)`).
+    /// `-½ dt U H²/Δp Σ_j [1 + R (W/W(Δp))⁴] ∇W m_j/(ρ_i + ρ_j)`, `R = 0.2`, support radius `H`, at most `½ U dt`
+    /// ([`sun_strength`]; Sun et al. 2017).
     Sun {
         /// Time step `dt` [s].
         time_step: f64,
@@ -34,13 +35,10 @@ pub fn particle_shift<const D: usize>(
 ) -> Vec<[f64; D]> {
     let at_rest = cloud.kernel.value(spacing);
     let (scale, limit) = match form {
-        Shift::Sun { time_step, speed } => {
-            let reach = 2.0 * cloud.h;
-            (
-                time_step * speed * reach * reach / (2.0 * spacing),
-                0.5 * speed * time_step,
-            )
-        }
+        Shift::Sun { time_step, speed } => (
+            sun_strength(cloud.kernel.radius(), spacing, speed, time_step),
+            0.5 * speed * time_step,
+        ),
         Shift::Lind => (0.5 * cloud.h * cloud.h, 0.2 * cloud.h),
     };
     let mut shift = cloud.map(|i| {
@@ -48,7 +46,7 @@ pub fn particle_shift<const D: usize>(
         cloud.for_each_neighbour(i, |j, d, r, slope| {
             let closeness = cloud.kernel.value(r) / at_rest;
             let share = match form {
-                Shift::Sun { .. } => cloud.mass[j] / (cloud.density[i] + cloud.density[j]),
+                Shift::Sun { .. } => 2.0 * cloud.mass[j] / (cloud.density[i] + cloud.density[j]),
                 Shift::Lind => cloud.volume[j],
             };
             let weight = (1.0 + 0.2 * closeness.powi(4)) * share * slope;

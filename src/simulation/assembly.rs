@@ -6,7 +6,7 @@ use super::solver::{Body, Solver};
 use super::timers::Phase;
 use crate::effects::{
     Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
-    Morris, PairTerm, Shift,
+    Morris, PairTerm, Shift, Surroundings, lattice_concentration,
 };
 use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
 use crate::error::{Error, Result};
@@ -43,6 +43,21 @@ pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColum
 
 fn slices<R: Real>(columns: &mut [Column<R>]) -> impl Iterator<Item = &mut [R]> {
     columns.iter_mut().map(|c| &mut c[..])
+}
+
+/// The form of shifting asked for, and what it needs to know.
+pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm, Surroundings)> {
+    let (kernel, h, spacing) = (config.kernel, config.smoothing_length, config.spacing);
+    config.shifting.map(|s| {
+        let around = Surroundings {
+            kernel,
+            h,
+            spacing,
+            concentration: lattice_concentration::<D>(kernel, h, spacing),
+            free_surface: s.free_surface,
+        };
+        (s.form, around)
+    })
 }
 
 /// The equation of state asked for.
@@ -322,21 +337,14 @@ impl<R: Real, const D: usize> Solver<R, D> {
     }
 
     fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
-        let (c, kernel) = (&self.config, self.kernel);
-        let (h, spacing, speed) = (c.smoothing_length, c.spacing, self.state.speed);
-        match c.shifting.map(|s| (s.form, s.free_surface)) {
+        let speed = self.state.speed;
+        match self.shifting {
             None => self.run_density_rates(diffusion, ()),
-            Some((ShiftingForm::Sun, surface)) => {
-                self.run_density_rates(
-                    diffusion,
-                    Shift::sun::<D>(kernel, h, spacing, speed, dt, surface),
-                );
+            Some((ShiftingForm::Sun, around)) => {
+                self.run_density_rates(diffusion, Shift::sun::<D>(&around, speed, dt));
             }
-            Some((ShiftingForm::Lind, surface)) => {
-                self.run_density_rates(
-                    diffusion,
-                    Shift::lind::<D>(kernel, h, spacing, dt, surface),
-                );
+            Some((ShiftingForm::Lind, around)) => {
+                self.run_density_rates(diffusion, Shift::lind::<D>(&around, speed, dt));
             }
         }
     }

@@ -2,19 +2,18 @@
 
 use super::boundary::Boundary;
 use super::budget::Budget;
-use super::config::{Config, ViscosityForm};
+use super::config::{Config, ShiftingForm, ViscosityForm};
 use super::gravity::Gravity;
 use super::guard::Guard;
 use super::retry::Trouble;
 use super::timers::{Phase, Timers};
-use crate::effects::{Stage, fastest_decay};
+use crate::effects::{Stage, Surroundings, fastest_decay};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
 use crate::particles::{Fluid, Given, Moving, Wall};
 use crate::simd::Real;
-use crate::step::apply_shift;
-use crate::step::{Limit, Limits, Motion, State};
+use crate::step::{Limit, Limits, Motion, State, apply_shift, apply_shift_of_free_fluid};
 use crate::sweep::Sweeper;
 use crate::walls::{Slip, WallMethod};
 use std::time::{Duration, Instant};
@@ -54,6 +53,7 @@ pub struct Solver<R, const D: usize> {
     pub(super) stages: Vec<Box<dyn Stage<R, D>>>,
     pub(super) limits: Limits,
     pub(super) kernel: KernelName,
+    pub(super) shifting: Option<(ShiftingForm, Surroundings)>,
     pub(super) time: f64,
     pub(super) step: u64,
     pub(super) time_step: f64,
@@ -149,6 +149,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 fixed: config.time_step,
             },
             kernel: config.kernel,
+            shifting: super::assembly::shifting::<D>(&config),
             fluid: Fluid::new(
                 fluid,
                 &grid,
@@ -290,7 +291,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.state = self.motion.finish(&mut self.fluid, dt);
         self.timers.book(Phase::Integrate);
         if let Some(shift) = &self.fluid.shift {
-            let longest = apply_shift(&mut self.fluid.position, shift);
+            let longest = if self.wall.is_none() && !self.grid.is_periodic() {
+                apply_shift_of_free_fluid(&mut self.fluid)
+            } else {
+                apply_shift(&mut self.fluid.position, shift)
+            };
             self.state.finite &= longest.is_finite();
             self.travelled += longest;
             self.timers.book(Phase::Shift);

@@ -70,7 +70,8 @@ impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: 
 
 /// What the sweep of continuity may also sum up for: the shift of particles.
 pub trait ShiftTerm<R: Real, const D: usize>: PairTerm<R, D> {
-    /// Puts the shift of a particle, if there is one, in the place of the second vector.
+    /// Puts the shift of a particle, if there is one, in the place of the second vector, and adds its source of density
+    /// to the scalar, in units of `ρ0`.
     fn write(&self, own: &Own<R, D>, sums: &mut Sums<R, D>);
 }
 
@@ -82,6 +83,7 @@ impl<R: Real, const D: usize> ShiftTerm<R, D> for () {
 impl<R: Real, const D: usize> ShiftTerm<R, D> for Shift {
     #[inline(always)]
     fn write(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
+        sums.scalar += self.source(sums);
         sums.gradient = self.finish(own, sums);
     }
 }
@@ -135,8 +137,8 @@ impl<R: Real, T: PairTerm<R, D>, S: ShiftTerm<R, D>, const D: usize> PairPass<R,
 
     #[inline(always)]
     fn finish(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
-        sums.scalar = sums.scalar * R::from_f64(self.reference_density);
         self.shift.write(own, sums);
+        sums.scalar = sums.scalar * R::from_f64(self.reference_density);
     }
 }
 

@@ -60,6 +60,17 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
         out
     }
 
+    /// The trace of the moment matrix: D in the interior.
+    #[inline(always)]
+    pub fn trace(&self) -> L::Real {
+        let plane = self.moment[0].sum() + self.moment[1].sum();
+        if D == 3 {
+            plane + self.moment[3].sum()
+        } else {
+            plane
+        }
+    }
+
     /// The least eigenvalue of the moment matrix: 1 in the interior, small at a free surface.
     #[inline(always)]
     pub fn least_moment(&self) -> L::Real {
