@@ -40,16 +40,15 @@ def rate(name: str) -> float:
 
 
 def motion(name: str) -> dict[str, Any]:
-    """A gear that gathers speed evenly and then keeps it."""
+    """A gear that gathers speed evenly and then keeps it: at full speed throughout, less what it
+    lacks at the start."""
     centre, speed = list(CENTRES[name]), rate(name)
     time = [RUN_UP * k / 8 for k in range(13)]
-    # The curve goes on for a while at full speed, so that it ends with exactly that.
-    angle = [
-        0.5 * speed * t * t / RUN_UP if t < RUN_UP else speed * (t - 0.5 * RUN_UP) for t in time
-    ]
+    behind = [speed * (0.5 * t * t / RUN_UP - t) for t in time if t < RUN_UP]
+    behind += [-0.5 * speed * RUN_UP] * (len(time) - len(behind))
     return {
-        "table": {"centre": centre, "time": time, "angle": angle},
-        "rotate": {"centre": centre, "rate": speed, "start": time[-1]},
+        "rotate": {"centre": centre, "rate": speed},
+        "table": {"centre": centre, "time": time, "angle": behind},
     }
 
 
