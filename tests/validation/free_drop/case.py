@@ -110,9 +110,9 @@ def draw(levels: Sequence[Level], canvas: Canvas) -> None:
 case = Case(
     title="Free drop: momentum",
     setup="A disc and a ball of radius 1 m that fly, spin and stretch, from jittered particles, "
-    f"with artificial viscosity, density diffusion and particle shifting, for {STEPS} steps in f64. "
-    "A shift moves particles and leaves them their velocities: of a fluid that nothing holds, it is "
-    "freed of what it would add to the angular momentum.",
+    f"with artificial viscosity, density diffusion and particle shifting, for {STEPS} steps in "
+    "f64. A shift moves particles and leaves them their velocities: of a fluid that nothing holds, "
+    "it is freed of what it would add to the angular momentum.",
     reference="Linear and angular momentum do not change: the largest component of their change.",
     unit="R/Δp in 2D (half of it in 3D)",
     short=(20,),
