@@ -34,7 +34,8 @@ static COMPRESS: [[u32; 8]; 256] = {
 
 /// The same for four doubles, each moved as two words.
 static COMPRESS_DOUBLE: [[u32; 8]; 16] = {
-    let mut table = [[0u32; 8]; 16];
+    // Where no lane is chosen, the first: any number, but a number.
+    let mut table = [[0, 1, 0, 1, 0, 1, 0, 1]; 16];
     let mut mask = 0;
     while mask < 16 {
         let (mut n, mut k) = (0, 0);

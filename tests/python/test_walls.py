@@ -228,6 +228,10 @@ def test_still_water_stays_still_at_every_wall() -> None:
         rel = {"semi-analytical": 0.02, "dynamic": 0.01}.get(wall, 1e-3)
         assert force[1] == pytest.approx(-water.mass.sum() * 9.81, rel=rel)
     assert max(errors.values()) < 0.012
+    # On facets the noise is the largest: there are no wall particles among those that the
+    # density follows.
+    noisy = energies.pop("semi-analytical")
+    assert noisy < 5e-6
     assert max(energies.values()) < 2e-6
 
 

@@ -28,7 +28,7 @@ def show(found: Explanation, console: Console) -> None:
             f"{found.time_step:.3g} s, set by the {found.limit} limit"
         )
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1))
-    table.add_column("effect", no_wrap=True)
+    table.add_column("effect", overflow="fold")
     numbers = ["bytes", "sweeps", "limit"]
     if pilot is not None:
         numbers += ["ns", "noise", "share"]
