@@ -165,9 +165,12 @@ fn a_number_that_is_none_is_named_in_any_array_at_any_step() {
                             Some(spoil(&mut bad, name, index, value))
                         };
                         simulation.restore(&bad).unwrap();
-                        // Handed on before anyone has looked: still found.
-                        let handed = simulation.save();
-                        simulation.restore(&handed).unwrap();
+                        // Handed on before anyone has looked: still found. But for masses, of which those from before
+                        // are handed on.
+                        if !name.ends_with("mass") {
+                            let handed = simulation.save();
+                            simulation.restore(&handed).unwrap();
+                        }
                         let found = unstable(simulation.advance(1e9, 1, Duration::MAX));
                         assert_eq!(found.step, step, "{what}");
                         assert!(!found.value.is_finite(), "{what}: {found}");
