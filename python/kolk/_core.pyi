@@ -158,7 +158,7 @@ class Simulation:
         bodies: Sequence[_Body],
         precision: str,
         threads: int,
-        surfaces: Sequence[tuple[str, _Floats]] = [],
+        surfaces: Sequence[tuple[str, _Floats]] = ...,
     ) -> Simulation: ...
     @property
     def time(self) -> float: ...
