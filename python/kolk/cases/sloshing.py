@@ -67,7 +67,7 @@ case = Case(
     title="Sloshing in a rolling tank, 2D",
     shows="walls in prescribed motion from a table: a bore that runs to and fro and hits the sides",
     source="Souto-Iglesias, Botia-Vera et al., SPHERIC benchmark 10: 900 x 508 mm, 93 mm of water",
-    reference="none measured is shipped: the forced first mode of small rolls is in the tests",
+    reference="none measured is shipped",
     cost="3,132 fluid and 2,240 wall particles, about 25,000 steps: 2 minutes on two cores",
     scene=scene,
 )
