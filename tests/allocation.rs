@@ -110,6 +110,13 @@ fn steps_do_not_allocate() {
             "dynamic tank",
             tank::<2>(40, 30).with(json!({"wall": {"method": "dynamic", "slip": "free"}})),
         ),
+        (
+            "predictor-corrector",
+            tank::<2>(40, 30).with(json!({
+                "wall": {"method": "dynamic", "slip": "free"}, "integrator": "predictor-corrector",
+            })),
+        ),
+        ("rk4", free_drop::<3>(14).with(json!({"integrator": "rk4"}))),
     ];
     let mut report = Vec::new();
     for (name, scene) in &scenes {

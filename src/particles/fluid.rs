@@ -1,6 +1,8 @@
 //! The particles of a fluid.
 
-use super::{Column, Given, Shared, component, for_ranges, permute, rounded, vector_columns};
+use super::{
+    Column, Given, Shared, StageColumns, component, for_ranges, permute, rounded, vector_columns,
+};
 use crate::neighbours::{Cells, Grid, Sorter};
 use crate::simd::Real;
 
@@ -35,6 +37,8 @@ pub struct Fluid<R, const D: usize> {
     /// Sums that a sweep needs on the way and that are of no use afterwards: a symmetric matrix, then a vector, if the
     /// scene has a sweep that needs them.
     pub sums: Vec<Column<R>>,
+    /// What an integrator of several stages keeps of the step's start, if the scene calls for one.
+    pub stages: Option<StageColumns<D>>,
     /// Particles by cell.
     pub cells: Cells,
     sorter: Sorter,
@@ -50,6 +54,8 @@ pub struct OptionalColumns {
     pub shift: bool,
     /// Number of [`Fluid::sums`].
     pub sums: usize,
+    /// Sets of columns in [`Fluid::stages`]: 0 for none.
+    pub stages: usize,
 }
 
 impl<R: Real, const D: usize> Fluid<R, D> {
@@ -71,6 +77,7 @@ impl<R: Real, const D: usize> Fluid<R, D> {
             gradient: columns.gradient.then(|| vector_columns(n)),
             shift: columns.shift.then(|| vector_columns(n)),
             sums: (0..columns.sums).map(|_| Column::new(n)).collect(),
+            stages: (columns.stages > 0).then(|| StageColumns::new(n, columns.stages > 1)),
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
             sorter: Sorter::new(n),
             scratch: Column::new(n),
@@ -100,9 +107,12 @@ impl<R: Real, const D: usize> Fluid<R, D> {
     }
 
     /// Sorts the particles into the cells of `grid`; with `mid_step`, what the sweep of forces left for the sweep of
-    /// continuity moves along.
+    /// continuity moves along, and what a step of several stages has kept.
     pub fn sort(&mut self, grid: &Grid<D>, mid_step: bool) {
         if grid.is_periodic() {
+            if let Some(stages) = self.stages.as_mut().filter(|_| mid_step) {
+                stages.wrap_along(&self.position, grid);
+            }
             let position = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut self.position[a]));
             for_ranges(
                 self.id.len(),
@@ -132,6 +142,9 @@ impl<R: Real, const D: usize> Fluid<R, D> {
             permute(&mut self.velocity[a], order, doubles);
         }
         permute(&mut self.density, order, doubles);
+        if let Some(stages) = self.stages.as_mut().filter(|_| mid_step) {
+            stages.permute(order, doubles);
+        }
         let reals = reinterpret::<R>(doubles);
         for a in 0..D {
             permute(&mut self.acceleration[a], order, reals);

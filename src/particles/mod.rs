@@ -4,12 +4,14 @@ mod column;
 mod fluid;
 mod moving;
 mod parallel;
+mod stage_columns;
 mod wall;
 
 pub use column::{Column, PAD};
 pub use fluid::{Fluid, OptionalColumns};
 pub use moving::Moving;
 pub use parallel::{GRAIN, Shared, for_ranges, permute, sum};
+pub use stage_columns::{StageColumns, StateColumns};
 pub use wall::Wall;
 
 use crate::simd::Real;

@@ -25,6 +25,8 @@ pub struct Wall<R, const D: usize> {
     pub condensation: Column<R>,
     /// Density and its rate, where walls follow the equation of continuity.
     pub density: Option<(Column<f64>, Column<R>)>,
+    /// Their density at the start of a step, and what its stages have added so far, where it is integrated in several.
+    pub stages: Option<[Column<f64>; 2]>,
     /// What walls need that move, if any does.
     pub moving: Option<Moving<R, D>>,
     /// Particles by cell.
@@ -59,6 +61,7 @@ impl<R: Real, const D: usize> Wall<R, D> {
                     Column::new(n),
                 )
             }),
+            stages: None,
             moving: None,
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
         };
@@ -99,6 +102,9 @@ impl<R: Real, const D: usize> Wall<R, D> {
         if let Some((density, rate)) = &mut self.density {
             permute(density, order, doubles);
             permute(rate, order, reinterpret::<R>(doubles));
+        }
+        for column in self.stages.iter_mut().flatten() {
+            permute(column, order, doubles);
         }
         let reals = reinterpret::<R>(doubles);
         let scalars = [
@@ -142,6 +148,7 @@ impl<R: Real, const D: usize> Wall<R, D> {
                 .density
                 .as_ref()
                 .map_or(0, |(d, r)| d.bytes() + r.bytes())
+            + self.stages.as_ref().map_or(0, |s| 2 * s[0].bytes())
             + self.moving.as_ref().map_or(0, Moving::bytes)
             + self.cells.bytes()
     }

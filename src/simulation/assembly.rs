@@ -38,6 +38,7 @@ pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColum
             (true, false) => matrix::<D>(),
             (false, false) => 0,
         },
+        stages: config.integrator.columns(),
     }
 }
 

@@ -4,6 +4,7 @@ use crate::effects::{HerschelBulkleyConfig, TurbulenceConfig};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::prescribed::{MotionConfig, SignalConfig};
+use crate::step::Integrator;
 use crate::walls::{Slip, WallMethod};
 use serde::{Deserialize, Serialize};
 
@@ -70,6 +71,9 @@ pub struct Config {
     /// Walls.
     #[serde(default)]
     pub wall: Option<WallConfig>,
+    /// How the equations are integrated in time.
+    #[serde(default)]
+    pub integrator: Integrator,
     /// Courant number; absent: the integrator's own.
     #[serde(default)]
     pub courant: Option<f64>,

@@ -6,8 +6,8 @@ use super::solver::Solver;
 use crate::error::{Error, Instability};
 use crate::simd::Real;
 
-/// Courant number beyond which sound is probably what the time step does not resolve.
-const HIGH_COURANT: f64 = 0.6;
+/// How far beyond the integrator's own Courant number sound is probably what the time step does not resolve.
+const HIGH_COURANT: f64 = 1.2;
 /// Mach number beyond which the speed of sound is probably too low.
 const HIGH_MACH: f64 = 0.3;
 
@@ -136,6 +136,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
         } else {
             String::new()
         };
+        let own = c.integrator.courant();
+        let high = HIGH_COURANT * own;
         let regular =
             self.limits.smoothing_length / (sound + if speed.is_finite() { speed } else { 0.0 });
         let (why, remedy) = if !finding.value.is_finite() && self.step == 0 {
@@ -149,16 +151,16 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 "raise sound_speed, if it is too low for the depth; check the initial densities and pressures"
                     .to_owned(),
             )
-        } else if c.time_step.is_some_and(|dt| dt > HIGH_COURANT * regular) {
-            let limit = HIGH_COURANT * regular;
+        } else if c.time_step.is_some_and(|dt| dt > high * regular) {
+            let limit = high * regular;
             (
                 format!("the fixed time step is longer than sound allows ({limit:.3e} s)"),
                 format!("leave out numerics.time_step, or give less than {limit:.3e}"),
             )
-        } else if c.courant.is_some_and(|courant| courant > HIGH_COURANT) {
+        } else if c.courant.is_some_and(|courant| courant > high) {
             (
                 format!("the Courant number {} is too high", self.limits.courant),
-                "leave out numerics.courant, or give 0.5 or less".to_owned(),
+                format!("leave out numerics.courant, or give {own} or less"),
             )
         } else if speed > HIGH_MACH * sound {
             (

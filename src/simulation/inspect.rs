@@ -69,6 +69,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
 
     pub(super) fn memory(&self) -> Vec<(&'static str, usize)> {
         let mut groups = self.fluid.memory().to_vec();
+        if let Some(stages) = &self.fluid.stages {
+            groups.push(("integrator", stages.bytes()));
+        }
         if let Some(wall) = &self.wall {
             groups.push(("walls", wall.bytes()));
         }

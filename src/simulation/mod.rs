@@ -15,6 +15,7 @@ mod foreign;
 mod gravity;
 mod guard;
 mod inspect;
+mod multistage;
 mod reaction;
 mod retry;
 mod sample;

@@ -11,17 +11,18 @@ use crate::effects::{Stage, Surroundings, fastest_decay};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
-use crate::particles::{Fluid, Given, Moving, Wall};
+use crate::particles::{Column, Fluid, Given, Moving, Wall};
 use crate::simd::Real;
-use crate::step::{Limit, Limits, Motion, State, apply_shift, apply_shift_of_free_fluid};
+use crate::step::{
+    Integrator, Limit, Limits, Motion, State, apply_shift, apply_shift_of_free_fluid,
+    predictor_corrector, runge_kutta_2, runge_kutta_4,
+};
 use crate::sweep::Sweeper;
 use crate::walls::{Slip, WallMethod};
 use std::time::{Duration, Instant};
 
 /// Cells are wider than the support radius by this share, so that the order lasts for some steps.
 const SKIN: f64 = 0.06;
-/// Largest stable Courant number of the symplectic step, times a margin.
-const COURANT: f64 = 0.5;
 
 /// Share of the stability limit (a decay of 1 per step) that a viscous step uses.
 const VISCOUS: f64 = 0.8;
@@ -118,6 +119,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 w.method == WallMethod::Dynamic,
             )
         });
+        if let Some(wall) = &mut set_of_walls
+            && let (Some((density, _)), true) = (&wall.density, config.integrator.columns() > 0)
+        {
+            wall.stages = Some(std::array::from_fn(|_| Column::new(density.len())));
+        }
         let motions = super::assembly::motions(&config, &bodies)?;
         if let Some(set) = &mut set_of_walls
             && !motions.is_empty()
@@ -138,7 +144,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 Sweeper::new(threads, h, per_cell, Grid::<D>::PARTS)
             },
             limits: Limits {
-                courant: config.courant.unwrap_or(COURANT),
+                courant: config.courant.unwrap_or(config.integrator.courant()),
                 smoothing_length: h,
                 viscous: config.laminar_viscosity.map_or(f64::INFINITY, |v| {
                     let angular = v.form == ViscosityForm::MonaghanGingold;
@@ -259,12 +265,34 @@ impl<R: Real, const D: usize> Solver<R, D> {
         Ok(())
     }
 
-    /// One step of `dt`: sort → drift → walls → forces → kick and drift → continuity → check.
+    /// One step of `dt`: the integrator → shift → check.
     fn one_step(&mut self, dt: f64, limit: Limit) -> std::result::Result<(), Trouble> {
         self.timers.start();
         if self.hopeless(dt, limit) {
             return Err(Trouble::TimeStep);
         }
+        match self.config.integrator {
+            Integrator::Symplectic => self.symplectic(dt)?,
+            Integrator::PredictorCorrector => predictor_corrector(self, dt)?,
+            Integrator::RungeKutta2 => runge_kutta_2(self, dt)?,
+            Integrator::RungeKutta4 => runge_kutta_4(self, dt)?,
+        }
+        if let Some(shift) = &self.fluid.shift {
+            let longest = if self.wall.is_none() && !self.grid.is_periodic() {
+                apply_shift_of_free_fluid(&mut self.fluid)
+            } else {
+                apply_shift(&mut self.fluid.position, shift)
+            };
+            self.state.finite &= longest.is_finite();
+            self.travelled += longest;
+            self.timers.book(Phase::Shift);
+        }
+        self.keep_inside(self.time + dt);
+        self.check(dt)
+    }
+
+    /// The default: sort → drift → walls → forces → kick and drift → continuity → drift of density.
+    fn symplectic(&mut self, dt: f64) -> std::result::Result<(), Trouble> {
         if 2.0 * (self.travelled + 1.5 * dt * self.state.speed) > self.skin {
             self.sort(false);
         }
@@ -290,18 +318,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.advance_walls(dt);
         self.state = self.motion.finish(&mut self.fluid, dt);
         self.timers.book(Phase::Integrate);
-        if let Some(shift) = &self.fluid.shift {
-            let longest = if self.wall.is_none() && !self.grid.is_periodic() {
-                apply_shift_of_free_fluid(&mut self.fluid)
-            } else {
-                apply_shift(&mut self.fluid.position, shift)
-            };
-            self.state.finite &= longest.is_finite();
-            self.travelled += longest;
-            self.timers.book(Phase::Shift);
-        }
-        self.keep_inside(self.time + dt);
-        self.check(dt)
+        Ok(())
     }
 
     /// Walls as they are prescribed at `time`.
@@ -315,7 +332,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
     }
 
-    fn sort(&mut self, mid_step: bool) {
+    pub(super) fn sort(&mut self, mid_step: bool) {
         self.fluid.sort(&self.grid, mid_step);
         self.travelled = 0.0;
         self.timers.book(Phase::Sort);

@@ -60,29 +60,29 @@ impl State {
 }
 
 /// The columns of a fluid as tasks share them.
-struct Columns<R, const D: usize> {
-    position: [Shared<f64>; D],
-    velocity: [Shared<f64>; D],
-    density: Shared<f64>,
-    pair_velocity: [Shared<R>; D],
-    volume: Shared<R>,
-    pressure: Shared<R>,
-    condensation: Shared<R>,
+pub(super) struct Columns<R, const D: usize> {
+    pub(super) position: [Shared<f64>; D],
+    pub(super) velocity: [Shared<f64>; D],
+    pub(super) density: Shared<f64>,
+    pub(super) pair_velocity: [Shared<R>; D],
+    pub(super) volume: Shared<R>,
+    pub(super) pressure: Shared<R>,
+    pub(super) condensation: Shared<R>,
 }
 
 /// Parts of them that belong to one task.
-struct Part<'a, R, const D: usize> {
-    position: [&'a mut [f64]; D],
-    velocity: [&'a mut [f64]; D],
-    density: &'a mut [f64],
-    pair_velocity: [&'a mut [R]; D],
-    volume: &'a mut [R],
-    pressure: &'a mut [R],
-    condensation: &'a mut [R],
+pub(super) struct Part<'a, R, const D: usize> {
+    pub(super) position: [&'a mut [f64]; D],
+    pub(super) velocity: [&'a mut [f64]; D],
+    pub(super) density: &'a mut [f64],
+    pub(super) pair_velocity: [&'a mut [R]; D],
+    pub(super) volume: &'a mut [R],
+    pub(super) pressure: &'a mut [R],
+    pub(super) condensation: &'a mut [R],
 }
 
 impl<R: Real, const D: usize> Columns<R, D> {
-    fn new(fluid: &mut Fluid<R, D>) -> Self {
+    pub(super) fn new(fluid: &mut Fluid<R, D>) -> Self {
         Columns {
             position: std::array::from_fn(|a| Shared::new(&mut fluid.position[a])),
             velocity: std::array::from_fn(|a| Shared::new(&mut fluid.velocity[a])),
@@ -96,7 +96,7 @@ impl<R: Real, const D: usize> Columns<R, D> {
 
     /// # Safety
     /// Ranges held at the same time must be disjoint, and inside the columns, which must outlive the pass.
-    unsafe fn part<'a>(&self, range: &Range<usize>) -> Part<'a, R, D> {
+    pub(super) unsafe fn part<'a>(&self, range: &Range<usize>) -> Part<'a, R, D> {
         // SAFETY: promised by the caller.
         unsafe {
             Part {
@@ -253,7 +253,7 @@ impl<const D: usize> Motion<D> {
 
     /// Condensation and volume of particle `i` of a part.
     #[inline(always)]
-    fn pair_state<R: Real>(
+    pub(super) fn pair_state<R: Real>(
         &self,
         density: f64,
         mass: R,

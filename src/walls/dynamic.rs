@@ -30,4 +30,27 @@ impl<R: Real, const D: usize> Wall<R, D> {
             *d = (*d + dt * r.to_f64()).max(reference);
         }
     }
+
+    /// The start of a step that integrates the density in several stages.
+    pub fn keep_density(&mut self) {
+        if let (Some((density, _)), Some([start, sum])) = (&self.density, &mut self.stages) {
+            start.copy_from_slice(density);
+            sum.fill(0.0);
+        }
+    }
+
+    /// The density of the next stage, `ahead` (s) of the start by the present rate, which enters the outcome with the
+    /// weight `weight` (s). The last stage has an `ahead` of none: it ends at the outcome.
+    pub fn stage_density(&mut self, ahead: Option<f64>, weight: f64, reference: f64) {
+        let (Some((density, rate)), Some([start, sum])) = (&mut self.density, &mut self.stages)
+        else {
+            return;
+        };
+        for i in 0..density.len() {
+            let rate = rate[i].to_f64();
+            sum[i] += weight * rate;
+            let change = ahead.map_or(sum[i], |ahead| ahead * rate);
+            density[i] = (start[i] + change).max(reference);
+        }
+    }
 }

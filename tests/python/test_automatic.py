@@ -21,6 +21,7 @@ GIVEN = {
         "acoustic_damper": 0.1,
         "free_surface": True,
         "wall": "dynamic",
+        "integrator": "rk4",
         "courant": 0.3,
     },
 }

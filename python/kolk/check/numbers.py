@@ -8,7 +8,7 @@ import numpy as np
 import numpy.typing as npt
 
 from kolk.errors import SceneError
-from kolk.scene import Body, Scene
+from kolk.scene import Body, Scene, automatic
 
 FloatArray = npt.NDArray[np.float64]
 
@@ -20,9 +20,6 @@ SHARE = 0.1
 
 MOST_NEIGHBOURS = {2: 60, 3: 250}
 """Neighbours beyond which a run pays for smoothing that it hardly needs, by dimension."""
-
-COURANT = 0.5
-"""Courant number that the time step at the start is estimated with, where the scene has none."""
 
 MOST_STEPS = 2e7
 """Steps beyond which a run is hopeless, however few its particles."""
@@ -50,13 +47,19 @@ def neighbours(scene: Scene) -> float:
     return float(np.sum(squared < radius**2 * (1 - 1e-9)) - 1)
 
 
+def own_courant(scene: Scene) -> float:
+    """The Courant number of the scene's integrator, where the scene names none."""
+    return automatic.COURANT[str(automatic.integrator(scene).value)]
+
+
 def time_step(scene: Scene) -> tuple[float, str]:
     """Smallest of the acoustic, viscous and force limits at the start, about, in s; and which."""
     numerics, h = scene.numerics, scene.smoothing_length
     if numerics.time_step is not None:
         return numerics.time_step, "numerics.time_step"
+    courant = numerics.courant or own_courant(scene)
     speed = max(float(np.linalg.norm(b.velocity, axis=1).max()) for b in scene.bodies())
-    limits = [((numerics.courant or COURANT) * h / (scene.sound_speed + speed), "sound")]
+    limits = [(courant * h / (scene.sound_speed + speed), "sound")]
     viscosity = scene.fluid[0].viscosity
     if viscosity is not None and viscosity.laminar is not None:
         limits.append((0.125 * h**2 / viscosity.laminar, "viscosity"))
@@ -138,17 +141,18 @@ def _time(scene: Scene, bodies: list[Body]) -> list[str]:
     step, limit = time_step(scene)
     found: list[str] = []
     numerics = scene.numerics
+    own = own_courant(scene)
     if numerics.time_step is not None:
-        acoustic = COURANT * scene.smoothing_length / scene.sound_speed
+        acoustic = own * scene.smoothing_length / scene.sound_speed
         if step > acoustic:
             found.append(
                 f"numerics.time_step of {step:g} s is longer than sound allows, {acoustic:.3g} s: "
                 "the run will be unstable. Leave it out"
             )
-    if numerics.courant is not None and numerics.courant > 1.2 * COURANT:
+    if numerics.courant is not None and numerics.courant > 1.2 * own:
         found.append(
-            f"numerics.courant of {numerics.courant:g} is above {COURANT:g}, where the step is "
-            "known to be stable: leave it out"
+            f"numerics.courant of {numerics.courant:g} is above {own:g}, where the step is known "
+            "to be stable: leave it out"
         )
     steps = scene.until / step
     work = steps * sum(len(b) for b in bodies)

@@ -75,6 +75,8 @@ def show(found: Explanation, console: Console) -> None:
     for effect in found.effects:
         if not effect.on:
             line(f"  {effect.name}: {effect.why}")
+    integrator = next(c for c in found.choices if c.key == "numerics.integrator")
+    line(f"Integrated in time by: {integrator.value}")
     line("Chosen by kolk:")
     for choice in found.choices:
         if choice.automatic:

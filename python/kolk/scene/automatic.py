@@ -140,6 +140,20 @@ def smoothing_ratio(scene: Scene) -> Choice:
     return Choice(key, scene.smoothing_ratio, True, reason)
 
 
+COURANT = {"symplectic": 0.5, "predictor-corrector": 0.4, "rk2": 0.2, "rk4": 0.7}
+"""Courant number of each integrator where the scene names none: the engine's own."""
+
+
+def integrator(scene: Scene) -> Choice:
+    """The integrator in time."""
+    key = "numerics.integrator"
+    given = scene.numerics.integrator
+    if given != "auto":
+        return _given(key, given)
+    reason = "one evaluation a step, and sound neither grows nor decays by it"
+    return Choice(key, "symplectic", True, reason)
+
+
 def courant(scene: Scene) -> Choice:
     """What sets the time step: a fixed one, a Courant number, or the integrator's own."""
     numerics = scene.numerics
@@ -148,7 +162,7 @@ def courant(scene: Scene) -> Choice:
     if numerics.courant is not None:
         return _given("numerics.courant", numerics.courant)
     reason = "what the integrator bears, less a margin"
-    return Choice("numerics.courant", 0.5, True, reason)
+    return Choice("numerics.courant", COURANT[str(integrator(scene).value)], True, reason)
 
 
 def sound_speed(scene: Scene) -> Choice:
@@ -183,6 +197,7 @@ CHOICES: tuple[Callable[[Scene], Choice | None], ...] = (
     laminar_form,
     wall,
     suction,
+    integrator,
     courant,
     sound_speed,
 )

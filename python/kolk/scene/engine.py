@@ -65,6 +65,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,
         "wall": wall,
+        "integrator": automatic.integrator(scene).value,
         "courant": numerics.courant,
         "time_step": numerics.time_step,
         "guard": numerics.guard == "on",

@@ -17,6 +17,9 @@ from .shapes import Tank
 BYTES_PER_PARTICLE = 300
 """Upper bound of the engine's memory for one particle, its neighbour search included."""
 
+_STAGE_SETS = {"predictor-corrector": 1, "rk2": 1, "rk4": 2}
+"""Sets of columns that an integrator of several stages keeps beside the state."""
+
 _FILLING_BYTES = 64
 """Bytes per lattice point while a shape is being filled: coordinates and distances in f64."""
 
@@ -60,7 +63,8 @@ def estimated_particles(scene: Scene, body: Fluid | Wall) -> float:
 def needed(scene: Scene) -> int:
     """Bytes that the scene's particles need in the engine, about."""
     bodies: list[Fluid | Wall] = [*scene.fluid, *scene.wall]
-    return int(BYTES_PER_PARTICLE * sum(estimated_particles(scene, b) for b in bodies))
+    stages = 8 * (2 * scene.dimension + 1) * _STAGE_SETS.get(scene.numerics.integrator, 0)
+    return int((BYTES_PER_PARTICLE + stages) * sum(estimated_particles(scene, b) for b in bodies))
 
 
 def check_memory(scene: Scene) -> None:

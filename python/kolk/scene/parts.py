@@ -335,6 +335,9 @@ class Numerics(Model):
     wall: Literal["auto", "adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty"] = (
         Field(default="auto", description="auto: adami")
     )
+    integrator: Literal["auto", "symplectic", "predictor-corrector", "rk2", "rk4"] = Field(
+        default="auto", description="in time; auto: symplectic"
+    )
     courant: Annotated[Real, Field(gt=0, le=2)] | None = Field(
         default=None, description="the integrator's own if absent"
     )
