@@ -191,6 +191,6 @@ pub const fn density_diffusion(antuono: bool) -> Declaration {
         sweeps: 0,
         limit: None,
         dissipates: "energy of sound near the spacing",
-        source: "Antuono, Colagrossi, Marrone & Molteni 2010; Molteni & Colagrossi 2009; Fourtakas et al. 2019",
+        source: "Antuono, Colagrossi, Marrone & Molteni 2010; Molteni & Colagrossi 2009; Fourtakas et al. 2019; Zhang, Hu & Adams 2017",
     }
 }

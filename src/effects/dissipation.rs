@@ -5,7 +5,10 @@
 //! Pressure and continuity themselves hand energy to and fro and lose none (Bonet & Lok 1999); at walls the two do not
 //! balance, and what is handed to walls is counted as theirs.
 
-use super::{Antuono, ArtificialViscosity, Contact, Fourtakas, Molteni, MonaghanGingold, Morris};
+use super::{
+    Antuono, ArtificialViscosity, Contact, Fourtakas, Molteni, MonaghanGingold, Morris,
+    RiemannDiffusion,
+};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{
     Other, Own, Pair, PairPass, Splat, Sums, Tally, Totals, Uses, relative_velocity,
@@ -29,6 +32,8 @@ pub enum Diffusion<const D: usize> {
     Antuono(Antuono),
     /// See [`Fourtakas`].
     Fourtakas(Fourtakas<D>),
+    /// See [`RiemannDiffusion`].
+    Riemann(RiemannDiffusion),
 }
 
 /// The effects of a scene whose powers are summed. Pairs are not counted one by one here: this pass runs rarely.
@@ -108,6 +113,7 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
             let (_, ours, theirs) = match diffusion {
                 Diffusion::Molteni(d) => Tally::of(d, pair, own, other),
                 Diffusion::Antuono(d) => Tally::of(d, pair, own, other),
+                Diffusion::Riemann(d) => Tally::of(d, pair, own, other),
                 Diffusion::Fourtakas(d) => Tally::of(d, pair, own, other),
             };
             let one = L::constant(1.0);

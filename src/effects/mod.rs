@@ -3,6 +3,8 @@
 //! A pair term adds to the sums of a sweep. Terms are combined statically, so that a scene without an effect runs code
 //! that does not know it.
 
+mod added;
+mod artificial_stress;
 mod artificial_viscosity;
 mod contact;
 mod continuity;
@@ -13,12 +15,16 @@ mod herschel_bulkley;
 mod laminar_viscosity;
 mod particle_shifting;
 mod pressure;
+mod riemann;
 mod shear_rate;
 mod stage;
+mod tensile_control;
 mod turbulence;
 mod variable_viscosity;
 mod whole_array;
 
+pub use added::Added;
+pub use artificial_stress::{ARTIFICIAL_STRESS, ArtificialStress};
 pub use artificial_viscosity::{ARTIFICIAL_VISCOSITY, ArtificialViscosity};
 pub use contact::{CONTACT, Contact};
 pub use continuity::Continuity;
@@ -31,8 +37,10 @@ pub use particle_shifting::{
     PARTICLE_SHIFTING, Shift, Surroundings, lattice_concentration, sun_strength,
 };
 pub use pressure::{PRESSURE, Pressure};
+pub use riemann::{RIEMANN_VISCOSITY, RiemannDiffusion, RiemannViscosity, fastest_diffusion};
 pub use shear_rate::ShearRate;
 pub use stage::{Around, Stage};
+pub use tensile_control::{TENSILE_CONTROL, TensileControl, TensileStage};
 pub use turbulence::{Smagorinsky, TurbulenceConfig};
 pub use variable_viscosity::{Rheology, VariableViscosity};
 pub use whole_array::{ACOUSTIC_DAMPER, GRAVITY};

@@ -46,6 +46,9 @@ pub trait Stage<R: Real, const D: usize>: Send + Sync {
         j: usize,
     ) -> [f64; D];
 
+    /// Puts what it keeps of each particle in the order of the fluid, which was sorted within a step.
+    fn follow(&mut self, _fluid: &mut Fluid<R, D>) {}
+
     /// Bytes held.
     fn bytes(&self) -> usize;
 }

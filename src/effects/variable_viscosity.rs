@@ -156,6 +156,10 @@ impl<R: Real, M: Rheology, const D: usize> Stage<R, D> for VariableViscosity<R, 
         single.vector(&self.friction, separation, &wall, &fluid)
     }
 
+    fn follow(&mut self, fluid: &mut Fluid<R, D>) {
+        fluid.reorder(&mut self.viscosity);
+    }
+
     fn bytes(&self) -> usize {
         self.viscosity.bytes()
     }

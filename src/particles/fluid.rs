@@ -165,6 +165,11 @@ impl<R: Real, const D: usize> Fluid<R, D> {
         permute(&mut self.id, order, reinterpret::<u32>(&mut self.scratch));
     }
 
+    /// Puts a column that was in the order from before the last [`sort`](Self::sort) in the present one.
+    pub fn reorder(&mut self, column: &mut Column<R>) {
+        permute(column, &self.sorter.order, reinterpret(&mut self.scratch));
+    }
+
     /// Bytes held, by what they serve.
     pub fn memory(&self) -> [(&'static str, usize); 4] {
         let state = D * (self.position[0].bytes() + self.velocity[0].bytes())

@@ -6,7 +6,8 @@ use super::solver::{Body, Solver};
 use super::timers::Phase;
 use crate::effects::{
     Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
-    Morris, PairTerm, Shift, Surroundings, lattice_concentration,
+    Morris, PairTerm, RiemannDiffusion, Shift, Surroundings, fastest_decay, fastest_diffusion,
+    lattice_concentration,
 };
 use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
 use crate::error::{Error, Result};
@@ -28,12 +29,12 @@ const fn matrix<const D: usize>() -> usize {
 pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColumns {
     let gradient = config
         .density_diffusion
-        .is_some_and(|d| d.form == DiffusionForm::Antuono);
+        .is_some_and(|d| matches!(d.form, DiffusionForm::Antuono | DiffusionForm::Riemann));
     let surface = config.shifting.is_some_and(|s| s.free_surface);
     OptionalColumns {
         gradient,
         shift: config.shifting.is_some(),
-        sums: match (gradient, surface) {
+        sums: match (gradient, surface || config.tensile_control.is_some()) {
             (_, true) => matrix::<D>() + D,
             (true, false) => matrix::<D>(),
             (false, false) => 0,
@@ -59,6 +60,26 @@ pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm,
         };
         (s.form, around)
     })
+}
+
+/// Share of the stability limit (a decay of 1 per step) that a step limited by dissipation uses.
+const VISCOUS: f64 = 0.8;
+
+/// The longest step in s that the laminar viscosity and the diffusion of the Riemann form allow; the other forms of density
+/// diffusion are slower than sound.
+pub(super) fn longest_dissipative_step<const D: usize>(config: &Config) -> f64 {
+    let (kernel, h, spacing) = (config.kernel, config.smoothing_length, config.spacing);
+    let viscous = config.laminar_viscosity.map_or(0.0, |v| {
+        let angular = v.form == ViscosityForm::MonaghanGingold;
+        v.kinematic * fastest_decay::<D>(kernel, h, spacing, angular)
+    });
+    let riemann = config
+        .density_diffusion
+        .filter(|d| d.form == DiffusionForm::Riemann);
+    let diffusive = riemann.map_or(0.0, |d| {
+        d.delta * config.sound_speed * fastest_diffusion::<D>(kernel, h, spacing)
+    });
+    VISCOUS / viscous.max(diffusive)
 }
 
 /// The equation of state asked for.
@@ -325,6 +346,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
             Some((DiffusionForm::Antuono, delta)) => {
                 self.rates_with(Antuono::new(delta, h, c0), dt)
+            }
+            Some((DiffusionForm::Riemann, delta)) => {
+                self.rates_with(RiemannDiffusion::new(delta, c0), dt)
             }
             Some((DiffusionForm::Fourtakas, delta)) => {
                 self.rates_with(

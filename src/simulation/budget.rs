@@ -8,7 +8,7 @@ use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
     Antuono, ArtificialViscosity, Contact, Diffusion, Dissipation, Fourtakas, Laminar, Molteni,
-    MonaghanGingold, Morris, POWERS,
+    MonaghanGingold, Morris, POWERS, RiemannDiffusion,
 };
 use crate::particles::sum;
 use crate::simd::Real;
@@ -98,6 +98,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             diffusion: c.density_diffusion.map(|d| match d.form {
                 DiffusionForm::Molteni => Diffusion::Molteni(Molteni::new(d.delta, h, c0)),
                 DiffusionForm::Antuono => Diffusion::Antuono(Antuono::new(d.delta, h, c0)),
+                DiffusionForm::Riemann => Diffusion::Riemann(RiemannDiffusion::new(d.delta, c0)),
                 DiffusionForm::Fourtakas => Diffusion::Fourtakas(Fourtakas::new(
                     d.delta,
                     h,

@@ -1,12 +1,13 @@
 //! The list of effects, and from a configuration to those with stages of their own: one line each.
 
-use super::config::{Config, DiffusionForm};
+use super::config::{Config, DiffusionForm, TensileForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
-    ACOUSTIC_DAMPER, ARTIFICIAL_VISCOSITY, Around, CONTACT, Declaration, GRAVITY, HerschelBulkley,
-    LAMINAR_VISCOSITY, PARTICLE_SHIFTING, PRESSURE, Rheology, Smagorinsky, Stage,
-    VariableViscosity, density_diffusion, fastest_decay,
+    ACOUSTIC_DAMPER, ARTIFICIAL_STRESS, ARTIFICIAL_VISCOSITY, Added, Around, ArtificialStress,
+    CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, PARTICLE_SHIFTING, PRESSURE,
+    PairTerm, RIEMANN_VISCOSITY, Rheology, RiemannViscosity, Smagorinsky, Stage, TENSILE_CONTROL,
+    TensileControl, TensileStage, VariableViscosity, density_diffusion, fastest_decay,
 };
 use crate::simd::Real;
 use crate::step::Limit;
@@ -26,7 +27,31 @@ pub(super) fn stages<R: Real, const D: usize>(
     add(c
         .herschel_bulkley
         .map(|v| thickened(c, n, HerschelBulkley::new(v, costless_viscosity::<D>(c)))));
+    add(c.riemann_viscosity.then(|| {
+        let term = RiemannViscosity::new(c.reference_density, c.sound_speed);
+        alone(c, term, RIEMANN_VISCOSITY, false)
+    }));
+    add(c.tensile_control.map(|t| match t.form {
+        TensileForm::Sun => {
+            let control = TensileControl::new(c.reference_density, t.free_surface);
+            Box::new(TensileStage::new(control, n)) as Box<dyn Stage<R, D>>
+        }
+        TensileForm::Monaghan => {
+            let term = ArtificialStress::new::<D>(c.kernel, c.smoothing_length, c.spacing);
+            alone(c, term, ARTIFICIAL_STRESS, true)
+        }
+    }));
     stages
+}
+
+/// A pair term in sweeps of its own.
+fn alone<R: Real, T: PairTerm<R, D> + PairTerm<f64, D> + 'static, const D: usize>(
+    c: &Config,
+    term: T,
+    declaration: Declaration,
+    at_walls: bool,
+) -> Box<dyn Stage<R, D>> {
+    Box::new(Added::new(term, declaration, c.reference_density, at_walls))
 }
 
 /// A liquid whose viscosity depends on the flow.
@@ -59,7 +84,8 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
     let gravity = c.gravity.is_some() || !c.gravity_over_time.is_empty();
     let antuono = c
         .density_diffusion
-        .is_some_and(|d| d.form == DiffusionForm::Antuono);
+        .is_some_and(|d| matches!(d.form, DiffusionForm::Antuono | DiffusionForm::Riemann));
+    let remedy = |form| c.tensile_control.is_some_and(|t| t.form == form);
     vec![
         (PRESSURE, true),
         (GRAVITY, gravity),
@@ -70,6 +96,9 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
         (density_diffusion(antuono), c.density_diffusion.is_some()),
         (ACOUSTIC_DAMPER, c.acoustic_damper.is_some()),
         (PARTICLE_SHIFTING, c.shifting.is_some()),
+        (RIEMANN_VISCOSITY, c.riemann_viscosity),
+        (TENSILE_CONTROL, remedy(TensileForm::Sun)),
+        (ARTIFICIAL_STRESS, remedy(TensileForm::Monaghan)),
         (CONTACT, true),
         (WALLS, walls),
         (MOVING_WALLS, !c.motion.is_empty()),

@@ -68,6 +68,12 @@ pub struct Config {
     /// Particle shifting.
     #[serde(default)]
     pub shifting: Option<ShiftingConfig>,
+    /// What keeps fluid under tension from clumping.
+    #[serde(default)]
+    pub tensile_control: Option<TensileControlConfig>,
+    /// Whether approaching particles meet as in a Riemann problem.
+    #[serde(default)]
+    pub riemann_viscosity: bool,
     /// Walls.
     #[serde(default)]
     pub wall: Option<WallConfig>,
@@ -163,6 +169,8 @@ pub enum DiffusionForm {
     Antuono,
     /// Fourtakas et al. 2019.
     Fourtakas,
+    /// Zhang, Hu & Adams 2017.
+    Riemann,
 }
 
 /// Particle shifting.
@@ -178,6 +186,27 @@ pub struct ShiftingConfig {
 
 fn yes() -> bool {
     true
+}
+
+/// What keeps fluid under tension from clumping.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct TensileControlConfig {
+    /// Its form.
+    pub form: TensileForm,
+    /// Whether there is a free surface, which is left to its tension.
+    #[serde(default = "yes")]
+    pub free_surface: bool,
+}
+
+/// Remedies against tensile instability.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum TensileForm {
+    /// Differences of pressure, Sun et al. 2018.
+    Sun,
+    /// Artificial stress, Monaghan 2000.
+    Monaghan,
 }
 
 /// Forms of particle shifting.
@@ -259,6 +288,15 @@ impl Config {
         }
         if let Some(a) = self.acoustic_damper {
             not_negative("acoustic_damper", a)?;
+        }
+        if let Some(wall) = self.wall.filter(|w| !w.method.uses_particles())
+            && self.tensile_control.is_some()
+        {
+            return Err(Error::Input(format!(
+                "tensile_control: found one beside the wall method {:?}, allowed are walls of particles: choose adami, \
+                 dynamic or modified-dynamic walls, or leave it out",
+                wall.method
+            )));
         }
         if let Some(c) = self.courant {
             positive("courant", c)?;

@@ -2,12 +2,12 @@
 
 use super::boundary::Boundary;
 use super::budget::Budget;
-use super::config::{Config, ShiftingForm, ViscosityForm};
+use super::config::{Config, ShiftingForm};
 use super::gravity::Gravity;
 use super::guard::Guard;
 use super::retry::Trouble;
 use super::timers::{Phase, Timers};
-use crate::effects::{Stage, Surroundings, fastest_decay};
+use crate::effects::{Stage, Surroundings};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::Grid;
@@ -23,9 +23,6 @@ use std::time::{Duration, Instant};
 
 /// Cells are wider than the support radius by this share, so that the order lasts for some steps.
 const SKIN: f64 = 0.06;
-
-/// Share of the stability limit (a decay of 1 per step) that a viscous step uses.
-const VISCOUS: f64 = 0.8;
 
 /// A named range of particles as they were given.
 #[derive(Clone, Debug)]
@@ -146,11 +143,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             limits: Limits {
                 courant: config.courant.unwrap_or(config.integrator.courant()),
                 smoothing_length: h,
-                viscous: config.laminar_viscosity.map_or(f64::INFINITY, |v| {
-                    let angular = v.form == ViscosityForm::MonaghanGingold;
-                    let decay = fastest_decay::<D>(config.kernel, h, config.spacing, angular);
-                    VISCOUS / (v.kinematic * decay)
-                }),
+                viscous: super::assembly::longest_dissipative_step::<D>(&config),
                 stages: None,
                 fixed: config.time_step,
             },
@@ -334,6 +327,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
 
     pub(super) fn sort(&mut self, mid_step: bool) {
         self.fluid.sort(&self.grid, mid_step);
+        if mid_step {
+            for stage in &mut self.stages {
+                stage.follow(&mut self.fluid);
+            }
+        }
         self.travelled = 0.0;
         self.timers.book(Phase::Sort);
     }

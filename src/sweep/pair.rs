@@ -37,6 +37,18 @@ pub struct Pair<L: Lanes, const D: usize> {
 }
 
 impl<L: Lanes, const D: usize> Pair<L, D> {
+    /// `|r_i - r_j|`.
+    #[inline(always)]
+    pub fn distance(&self) -> L {
+        self.squared.sqrt()
+    }
+
+    /// `1/|r_i - r_j|`, finite for particles in the same place.
+    #[inline(always)]
+    pub fn inverse_distance(&self) -> L {
+        self.squared.max(L::constant(1e-30)).sqrt().recip()
+    }
+
     /// `W`, zero out of reach.
     #[inline(always)]
     pub fn weight(&self) -> L {

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 
+import numpy as np
 import pytest
 
 import kolk
@@ -17,7 +18,9 @@ GIVEN = {
     "smoothing_ratio": 1.5,
     "numerics": {
         "density_diffusion": "fourtakas",
+        "scheme": "delta-sph",
         "shifting": "none",
+        "tensile_control": "none",
         "acoustic_damper": 0.1,
         "free_surface": True,
         "wall": "dynamic",
@@ -98,6 +101,62 @@ def test_the_sound_speed_says_what_it_came_from():
     assert "numerics.expected_speed" in told.reason
     moving = automatic.sound_speed(vortex())
     assert "starts" in moving.reason
+
+
+def test_tensile_control_is_for_fluid_that_starts_under_tension():
+    def stretched(**changes):
+        # Half a per mille below the density at rest: a tension of 5e-4 rho0 c0^2.
+        at = (np.arange(10) + 0.5) * 0.1
+        position = np.stack([g.ravel() for g in np.meshgrid(at, at)], axis=1)
+        fluid = kolk.Fluid.from_arrays(
+            position=position,
+            density=np.full(len(position), 999.5),
+            reference_density=1000.0,
+            sound_speed=10.0,
+        )
+        both = {"x": [0.0, 1.0], "y": [0.0, 1.0]}
+        return kolk.Scene(
+            name="stretched",
+            dimension=2,
+            spacing=0.1,
+            until=1.0,
+            fluid=[fluid],
+            **{"periodic": both, **changes},
+        )
+
+    asked = automatic.tensile_control(stretched())
+    assert asked.value == "sun"
+    assert "49.9 Pa" in asked.reason
+    config = json.loads(stretched().engine_config())
+    assert config["tensile_control"] == {"form": "sun", "free_surface": False}
+    # A flow of 1 m/s explains that much, a free surface gives way, and who says so is believed.
+    for changes in (
+        {"numerics": {"expected_speed": 1.0}},
+        {"periodic": None},
+        {"numerics": {"tensile_control": "none"}},
+    ):
+        scene = stretched(**changes)
+        assert automatic.tensile_control(scene).value == "none"
+        assert json.loads(scene.engine_config())["tensile_control"] is None
+    for scene in (tank(), vortex()):
+        assert automatic.tensile_control(scene).value == "none"
+
+
+def test_a_scheme_brings_its_diffusion():
+    found = {
+        scheme: json.loads(vortex(numerics={"scheme": scheme}).engine_config())
+        for scheme in ("delta-sph", "edac", "riemann")
+    }
+    assert found["delta-sph"]["density_diffusion"] == {"form": "molteni", "delta": 0.1}
+    assert found["edac"]["density_diffusion"] == {"form": "molteni", "delta": 0.0625}
+    assert found["riemann"]["density_diffusion"] == {"form": "riemann", "delta": 1.0}
+    assert [c["riemann_viscosity"] for c in found.values()] == [False, False, True]
+    with pytest.raises(kolk.SceneError, match="diffusion of its own"):
+        vortex(numerics={"scheme": "edac", "density_diffusion": "antuono"})
+    with pytest.raises(kolk.SceneError, match="dissipation of its own"):
+        vortex(numerics={"scheme": "riemann"}).replace({"fluid.fluid.viscosity.artificial": 0.1})
+    with pytest.raises(kolk.SceneError, match="walls of particles"):
+        tank(numerics={"tensile_control": "sun", "wall": "penalty"})
 
 
 def test_every_case_can_say_what_was_chosen():

@@ -153,6 +153,8 @@ KEYS: dict[str, Any] = {
     "numerics.time_step": small,
     "numerics.delta": small,
     "numerics.shifting": st.sampled_from(["none", "sun", "lind"]),
+    "numerics.tensile_control": st.sampled_from(["auto", "none", "sun", "monaghan"]),
+    "numerics.scheme": st.sampled_from(["auto", "delta-sph", "edac"]),
     "numerics.density_diffusion": st.sampled_from(["none", "molteni", "antuono", "fourtakas"]),
     "numerics.wall": st.sampled_from(["adami", "dynamic"]),
     "numerics.background_pressure": small,

@@ -94,6 +94,25 @@ def _chosen(choose: Callable[[Scene], automatic.Choice | None]) -> Callable[[Sce
     return why
 
 
+def _riemann(scene: Scene) -> str:
+    choice = automatic.scheme(scene)
+    if choice.value == "riemann":
+        return _asked(choice.key, choice.value)
+    return f"left out: {choice.key} = {choice.value}"
+
+
+def _remedy(form: str) -> Callable[[Scene], str]:
+    def why(scene: Scene) -> str:
+        choice = automatic.tensile_control(scene)
+        if choice.value == form:
+            return _chosen(automatic.tensile_control)(scene)
+        if choice.automatic:
+            return f"left out: {choice.reason}"
+        return f"left out: {choice.key} = {choice.value}"
+
+    return why
+
+
 def _contact(scene: Scene) -> str:
     if free_of_core(scene):
         return "walls only: where pressure is everywhere, particles keep apart by themselves"
@@ -197,6 +216,27 @@ CATALOGUE: tuple[Entry, ...] = (
         "term of the sweep of continuity, and a stage",
         _chosen(automatic.shifting),
         _no("shifting"),
+    ),
+    Entry(
+        "Riemann dissipation",
+        "takes up the speed at which particles meet",
+        "a sweep of its own",
+        _riemann,
+        _no(riemann_viscosity=False),
+    ),
+    Entry(
+        "tensile control",
+        "keeps fluid under tension from clumping: differences of pressure",
+        "a sweep of its own",
+        _remedy("sun"),
+        _no("tensile_control"),
+    ),
+    Entry(
+        "artificial stress",
+        "keeps fluid under tension from clumping: a repulsion of near pairs",
+        "a sweep of its own, and one at walls",
+        _remedy("monaghan"),
+        _no("tensile_control"),
     ),
     Entry(
         "contact",

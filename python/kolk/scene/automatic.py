@@ -49,12 +49,37 @@ def free_surface(scene: Scene) -> Choice:
     return Choice(key, False, True, f"no gravity pulls it down, and {held} hold the fluid")
 
 
+def scheme(scene: Scene) -> Choice:
+    """The weakly compressible scheme."""
+    key = "numerics.scheme"
+    given = scene.numerics.scheme
+    if given != "auto":
+        return _given(key, given)
+    return Choice(key, "delta-sph", True, "the least error for its time")
+
+
+SCHEMES = {
+    # Ramachandran & Puri, Comput. Fluids 179 (2019): nu = alpha h c / 8 with alpha = 0.5, which is
+    # Molteni's form with delta = alpha / 8.
+    "edac": ("molteni", 0.5 / 8.0),
+    # Zhang, Hu & Adams, J. Comput. Phys. 335 (2017): the whole difference of the states.
+    "riemann": ("riemann", 1.0),
+}
+"""Form and coefficient of the density diffusion that a scheme brings along."""
+
+
 def density_diffusion(scene: Scene) -> Choice:
     """The form of density diffusion, or "none"."""
     key = "numerics.density_diffusion"
+    chosen = str(scheme(scene).value)
+    if chosen in SCHEMES:
+        return Choice(key, SCHEMES[chosen][0], True, f'that of numerics.scheme = "{chosen}"')
     given = scene.numerics.density_diffusion
     if given != "auto":
         return _given(key, given)
+    if not free_surface(scene).value and not scene.weight.any():
+        reason = "without weight and surface no gradient is needed: less error and time"
+        return Choice(key, "molteni", True, reason)
     return Choice(
         key,
         "antuono",
@@ -74,6 +99,45 @@ def shifting(scene: Scene) -> Choice:
     else:
         reason = "keeps particles evenly spread where pressure turns negative"
     return Choice(key, "sun", True, reason)
+
+
+def tensile_control(scene: Scene) -> Choice:
+    """What keeps fluid under tension from clumping, or "none". Fills the scene with particles."""
+    key = "numerics.tensile_control"
+    given = scene.numerics.tensile_control
+    if given != "auto":
+        return _given(key, given)
+    if free_surface(scene).value:
+        reason = "fluid with a free surface gives way to tension"
+        return Choice(key, "none", True, reason)
+    if scene.numerics.wall in FACETS:
+        return Choice(key, "none", True, "walls without particles leave nothing to take it off")
+    from .material import pressure_at
+
+    fluids = [b for b in scene.filling.bodies if b.kind == "fluid"]
+    fastest = max(float(np.max(np.sum(b.velocity**2, axis=1), initial=0.0)) for b in fluids)
+    expected = max(scene.filling.expected_speed, scene.numerics.expected_speed or 0.0) ** 2
+    rest = scene.fluid[0].density
+    # The second term is rounding of the density.
+    bound = rest * max(fastest, expected) + 1e-6 * rest * scene.sound_speed**2
+    least = float(
+        pressure_at(
+            np.array([min(float(b.density.min()) for b in fluids)]),
+            reference_density=rest,
+            sound_speed=scene.sound_speed,
+            eos=scene.fluid[0].eos,
+            gamma=scene.fluid[0].gamma,
+            background_pressure=scene.numerics.background_pressure,
+        )[0]
+    )
+    if least < -bound:
+        return Choice(key, "sun", True, f"the fluid starts under a tension of {-least:.3g} Pa")
+    reason = "no more tension at the start than motion makes, which shifting copes with"
+    return Choice(key, "none", True, reason)
+
+
+FACETS = ("semi-analytical", "penalty")
+"""Methods of walls that have no particles."""
 
 
 def acoustic_damper(scene: Scene) -> Choice:
@@ -191,8 +255,10 @@ def sound_speed(scene: Scene) -> Choice:
 CHOICES: tuple[Callable[[Scene], Choice | None], ...] = (
     free_surface,
     smoothing_ratio,
+    scheme,
     density_diffusion,
     shifting,
+    tensile_control,
     acoustic_damper,
     laminar_form,
     wall,

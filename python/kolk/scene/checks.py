@@ -13,7 +13,7 @@ from .base import nearest, shown
 from .expression import Expression
 from .model import Scene
 from .motion import Gravity
-from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, PressureProbe, Wall
+from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, Numerics, PressureProbe, Wall
 
 MATERIAL = ("density", "sound_speed", "viscosity", "eos", "gamma")
 
@@ -176,4 +176,27 @@ def _numerics(scene: Scene) -> Iterator[Problem]:
             ("numerics", "density_diffusion"),
             'found "fourtakas", which subtracts the hydrostatic part, but the scene has no '
             'gravity: use "molteni" or "antuono"',
+        )
+    scheme = scene.numerics.scheme
+    if scheme in ("edac", "riemann"):
+        for key in ("density_diffusion", "delta"):
+            if getattr(scene.numerics, key) != Numerics.model_fields[key].default:
+                yield Problem(
+                    ("numerics", key),
+                    f'found {shown(getattr(scene.numerics, key))}, but the scheme "{scheme}" has a '
+                    'diffusion of its own: leave it out, or use scheme = "delta-sph"',
+                )
+    for fluid in scene.fluid:
+        if scheme == "riemann" and fluid.viscosity and fluid.viscosity.artificial is not None:
+            yield Problem(
+                ("fluid", fluid.name, "viscosity", "artificial"),
+                f'found {shown(fluid.viscosity.artificial)}, but the scheme "riemann" has a '
+                'dissipation of its own: leave it out, or use scheme = "delta-sph"',
+            )
+    remedy, method = scene.numerics.tensile_control, scene.numerics.wall
+    if remedy not in ("auto", "none") and method in ("semi-analytical", "penalty") and scene.wall:
+        yield Problem(
+            ("numerics", "tensile_control"),
+            f'found "{remedy}", which needs walls of particles, but the walls are "{method}": use '
+            '"adami", "dynamic" or "modified-dynamic" walls, or "none"',
         )

@@ -29,6 +29,14 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     form_of_diffusion = automatic.density_diffusion(scene).value
     if form_of_diffusion != "none":
         diffusion = {"form": form_of_diffusion, "delta": numerics.delta}
+    scheme = str(automatic.scheme(scene).value)
+    if scheme in automatic.SCHEMES:
+        own, delta = automatic.SCHEMES[scheme]
+        diffusion = {"form": own, "delta": delta}
+    tensile: dict[str, Any] | None = None
+    form_of_remedy = automatic.tensile_control(scene).value
+    if form_of_remedy != "none":
+        tensile = {"form": form_of_remedy, "free_surface": scene.free_surface}
     form_of_shift = automatic.shifting(scene).value
     if form_of_shift != "none":
         shifting = {"form": form_of_shift, "free_surface": scene.free_surface}
@@ -64,6 +72,8 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "density_diffusion": diffusion,
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,
+        "riemann_viscosity": scheme == "riemann",
+        "tensile_control": tensile,
         "wall": wall,
         "integrator": automatic.integrator(scene).value,
         "courant": numerics.courant,

@@ -38,6 +38,21 @@ def density_at(
     return np.asarray(reference_density * (base ** (1.0 / gamma) if eos == "tait" else base))
 
 
+def pressure_at(
+    density: FloatArray,
+    *,
+    reference_density: float,
+    sound_speed: float,
+    eos: str = "tait",
+    gamma: float = 7.0,
+    background_pressure: float = 0.0,
+) -> FloatArray:
+    """Pressure (n,) in Pa at ``density`` (n,) in kg/m^3: the inverse of :func:`density_at`."""
+    ratio = density / reference_density
+    strain = (ratio**gamma - 1.0) / gamma if eos == "tait" else ratio - 1.0
+    return np.asarray(background_pressure + reference_density * sound_speed**2 * strain)
+
+
 def hydrostatic_pressure(
     height: FloatArray,
     surface: float,

@@ -314,14 +314,27 @@ class Probe(Model):
 class Numerics(Model):
     """How the equations are solved. The defaults suit free-surface flow."""
 
+    scheme: Literal["auto", "delta-sph", "edac", "riemann"] = Field(
+        default="auto",
+        description="what keeps pressure smooth: density diffusion of the form asked for "
+        "(delta-sph), the diffusion of pressure of EDAC, or a Riemann problem between particles; "
+        "auto: delta-sph",
+    )
     density_diffusion: Literal["auto", "antuono", "molteni", "fourtakas", "none"] = Field(
-        default="auto", description="auto: antuono"
+        default="auto",
+        description="of delta-sph; auto: antuono, but molteni without free surface and weight",
     )
     delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
         default=0.1, description="of the density diffusion"
     )
     shifting: Literal["auto", "none", "sun", "lind"] = Field(
         default="auto", description="auto: sun"
+    )
+    tensile_control: Literal["auto", "none", "sun", "monaghan"] = Field(
+        default="auto",
+        description="what keeps fluid under tension from clumping: differences of pressure (sun) "
+        "or artificial stress (monaghan); auto: sun where the fluid starts under a tension that no "
+        "motion explains and has no free surface, else none",
     )
     acoustic_damper: Annotated[Real, Field(ge=0, le=0.5)] | Literal["auto"] = Field(
         default="auto",

@@ -55,7 +55,9 @@ name = "load"
 force = { body = "tank" }
 
 [numerics]
+scheme = "auto"                    # or delta-sph, edac, riemann
 density_diffusion = "antuono"      # or molteni, fourtakas, none
+tensile_control = "auto"           # or none, sun, monaghan: for fluid under tension
 shifting = "auto"                  # or none, sun, lind
 acoustic_damper = "auto"           # or a number, 0 for none: takes up sound
 wall = "adami"                     # or dynamic

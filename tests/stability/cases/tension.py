@@ -14,7 +14,7 @@ TENSION = 0.1
 """Tension in units of ρ0 c0²."""
 
 
-def scene(across: int, shifting: str = "auto") -> kolk.Scene:
+def scene(across: int, remedy: str = "auto") -> kolk.Scene:
     """Particles (1 % jitter) whose density makes the pressure -0.1 ρ0 c0² everywhere."""
     spacing = 1.0 / across
     density = DENSITY * (1.0 - GAMMA * TENSION) ** (1.0 / GAMMA)
@@ -37,13 +37,13 @@ def scene(across: int, shifting: str = "auto") -> kolk.Scene:
                 sound_speed=SOUND,
             )
         ],
-        numerics={"shifting": shifting},
+        numerics={"tensile_control": remedy},
     )
 
 
-def watched(across: int, steps: int, shifting: str, variant: str) -> Result:
+def watched(across: int, steps: int, remedy: str, variant: str) -> Result:
     """The square after a number of steps."""
-    watch = Watch(simulation(scene(across, shifting))).steps(steps, 10)
+    watch = Watch(simulation(scene(across, remedy))).steps(steps, 10)
     sound = 0.5 * DENSITY * SOUND**2
     return watch.result(
         variant,
@@ -67,5 +67,5 @@ case = Case(
     short=("steps 1000",),
     full=("steps 50000",),
     without=lambda: watched(20, 1000, "none", "steps 1000"),
-    remedy="particle shifting",
+    remedy="tensile control",
 )
