@@ -197,6 +197,29 @@ fn a_riemann_problem_takes_energy() {
 }
 
 #[test]
+fn what_flows_in_a_riemann_problem_is_neither_made_nor_steep_for_long() {
+    // A density that differs from particle to particle, without order.
+    let rough = |x: &[f64; 2]| RHO * (1.0 + 0.01 * (97.0 * x[0] + 61.0 * x[1]).sin());
+    let form = json!({"density_diffusion": {"form": "riemann", "delta": 1.0}});
+    let case = Case::<2>::new(KernelName::WendlandC2, rough, false, form);
+    let rate = by_id(&case.rates, "density_rate");
+    let volume: Vec<f64> = case
+        .mass
+        .iter()
+        .zip(&case.density)
+        .map(|(m, rho)| m / rho)
+        .collect();
+    let sum = |weight: &dyn Fn(usize) -> f64| -> f64 {
+        (0..rate.len())
+            .map(|i| volume[i] * weight(i) * rate[i])
+            .sum()
+    };
+    let all = sum(&|i| rate[i].signum());
+    assert!(sum(&|_| 1.0).abs() < 1e-12 * all);
+    assert!(sum(&|i| case.density[i] - RHO) < 0.0);
+}
+
+#[test]
 fn nothing_is_added_where_the_state_is_uniform() {
     let across = 24;
     let uniform = |changes: Value| {
