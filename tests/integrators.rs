@@ -73,7 +73,9 @@ impl<F: Fn([f64; 2], f64) -> [f64; 2]> System for Equations<F> {
     fn rates(&mut self, since: f64, _dt: f64) {
         self.rate = (self.f)(self.y, self.time + since);
     }
-    fn middle(&mut self, _dt: f64) {}
+    fn middle(&mut self, dt: f64) {
+        self.rates(0.5 * dt, dt);
+    }
     fn arrive(&mut self, weight: f64, _dt: f64) {
         for k in 0..2 {
             self.y[k] = self.start[k] + self.sum[k] + weight * self.rate[k];

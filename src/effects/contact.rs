@@ -45,6 +45,23 @@ impl Contact {
     }
 }
 
+impl Contact {
+    /// `c` of the force density `c r_ij`, per volume of the other.
+    #[inline(always)]
+    pub fn push<L: Lanes, const D: usize>(
+        &self,
+        pair: &Pair<L, D>,
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+    ) -> L {
+        let depth = L::constant(1.0) - pair.squared * L::constant(self.inverse_reach2);
+        let approach = dot(&relative_velocity(own, other), &pair.separation);
+        // Never a pull: a dashpot must not hold together what parts.
+        let dashpot = (L::constant(1.0) - L::constant(self.damping) * approach).max(L::zero());
+        L::constant(self.strength) * depth.max(L::zero()) * dashpot
+    }
+}
+
 impl<R: Real, const D: usize> PairTerm<R, D> for Contact {
     #[inline(always)]
     fn uses(&self) -> Uses {
@@ -62,11 +79,7 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Contact {
         other: &Other<L, D>,
         tally: &mut Tally<L, D>,
     ) {
-        let depth = L::constant(1.0) - pair.squared * L::constant(self.inverse_reach2);
-        let approach = dot(&relative_velocity(own, other), &pair.separation);
-        // Never a pull: a dashpot must not hold together what parts.
-        let dashpot = (L::constant(1.0) - L::constant(self.damping) * approach).max(L::zero());
-        tally.push(L::constant(self.strength) * depth.max(L::zero()) * dashpot);
+        tally.push(self.push(pair, own, other));
     }
 }
 

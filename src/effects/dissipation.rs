@@ -7,7 +7,7 @@
 
 use super::{
     Antuono, ArtificialViscosity, Contact, Fourtakas, Molteni, MonaghanGingold, Morris,
-    RiemannDiffusion,
+    RiemannDiffusion, Shift,
 };
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{
@@ -47,23 +47,30 @@ pub struct Dissipation<const D: usize> {
     pub friction: bool,
     /// Density diffusion.
     pub diffusion: Option<Diffusion<D>>,
+    /// Shifting without a free surface, where density follows the particles' concentration by pairs.
+    pub following: Option<Shift>,
     /// Bulk viscosity over density of the acoustic damper in m²/s.
     pub damper: f64,
     /// The core of fluid particles.
     pub core: Option<Contact>,
-    /// What keeps the fluid out of walls.
-    pub contact: Contact,
 }
 
 /// What the powers are of, in the order of the totals.
-pub const POWERS: [&str; 6] = [
+pub const POWERS: [&str; 7] = [
     "artificial viscosity",
     "laminar viscosity",
     "density diffusion",
     "acoustic damper",
     "contact",
     "walls",
+    "particle shifting",
 ];
+
+/// The entry of contact; between fluid particles here, at walls it is a total of the sweep of forces.
+pub const CONTACT_POWER: usize = 4;
+
+/// The entry of walls.
+pub const WALL_POWER: usize = 5;
 
 impl<const D: usize> Dissipation<D> {
     #[inline(always)]
@@ -77,6 +84,21 @@ impl<const D: usize> Dissipation<D> {
             Laminar::Morris(m) => Some(Tally::of(&m, pair, own, other).0),
             Laminar::MonaghanGingold(m) => Some(Tally::of(&m, pair, own, other).0),
         }
+    }
+
+    /// Power that rates of density over `ρ0` of a pair store, per volume of both.
+    #[inline(always)]
+    fn stored<L: Lanes>(
+        &self,
+        [ours, theirs]: [L; 2],
+        own: &Splat<L, D>,
+        other: &Other<L, D>,
+    ) -> L {
+        let one = L::constant(1.0);
+        let p = self.pressure(own.pressure(), own.rate());
+        let q = self.pressure(other.pressure(), other.rate());
+        ours * p * (one + own.condensation()).recip()
+            + theirs * q * (one + other.condensation()).recip()
     }
 
     /// Pressure of a particle without the part of the damper.
@@ -116,12 +138,11 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
                 Diffusion::Riemann(d) => Tally::of(d, pair, own, other),
                 Diffusion::Fourtakas(d) => Tally::of(d, pair, own, other),
             };
-            let one = L::constant(1.0);
-            let p = self.pressure(own.pressure(), own.rate());
-            let q = self.pressure(other.pressure(), other.rate());
-            let stored = ours * p * (one + own.condensation()).recip()
-                + theirs * q * (one + other.condensation()).recip();
-            tally.account(2, -stored);
+            tally.account(2, -self.stored([ours, theirs], own, other));
+        }
+        if let Some(shift) = &self.following {
+            let (_, ours, theirs) = Tally::of(shift, pair, own, other);
+            tally.account(6, -self.stored([ours, theirs], own, other));
         }
         if self.damper != 0.0 {
             let compression = pair.slope * dot(&u, &pair.separation);
@@ -147,16 +168,19 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
             let u = own.velocity();
             std::array::from_fn(|a| u[a] - moves[a])
         };
-        let contact = Tally::of(&self.contact, pair, own, other).0;
-        tally.account(4, -dot(&contact, &slides));
-        let mut given = dot(&contact, &moves);
+        let mut given = L::zero();
         if self.friction
             && let Some(force) = self.laminar_force(pair, own, other)
         {
             tally.account(1, -dot(&force, &slides));
-            given += dot(&force, &moves);
+            given = dot(&force, &moves);
         }
         let fluid_pressure = self.pressure(own.pressure(), own.rate());
+        if let Some(shift) = &self.following {
+            let rate = Tally::of(shift, pair, own, other).1;
+            let density = L::constant(1.0) + own.condensation();
+            tally.account(6, -(rate * fluid_pressure * density.recip()));
+        }
         let (out, back) = (
             dot(&own.velocity(), &pair.separation),
             dot(&moves, &pair.separation),
@@ -171,8 +195,18 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
     #[inline(always)]
     fn collect(&self, own: &Own<R, D>, sums: &Sums<R, D>, totals: &mut Totals) {
         let volume = own.values().volume().to_f64();
-        for (total, power) in totals.iter_mut().zip(&sums.moment) {
+        for (total, power) in totals
+            .iter_mut()
+            .zip(sums.moment.iter().chain([&sums.scalar]))
+        {
             *total += volume * power.to_f64();
+        }
+        if let Some(shift) = &self.following {
+            let own = own.values();
+            let pressure = self.pressure(own.pressure(), own.rate()).to_f64();
+            let density = 1.0 + own.condensation().to_f64();
+            let rate: R = shift.source(sums);
+            totals[6] -= volume * pressure * rate.to_f64() / density;
         }
     }
 }

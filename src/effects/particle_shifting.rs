@@ -2,8 +2,7 @@
 //!
 //! The sums share the sweep of continuity. Density does not feel a shift, so that the spacing of the particles would
 //! drift away from it: violent flows would swell by a third and more. A weak source of density takes it back to what
-//! the particles' concentration says, wherever that is defined; see [`Shift::source`]. Choose it for flows without violent free surfaces (vortices, channels), and where pressure turns
-//! negative.
+//! the particles' concentration says, wherever that is defined; see [`Shift::source`].
 
 use super::{Declaration, PairTerm, Quantity};
 use crate::kernel::KernelName;
@@ -100,6 +99,11 @@ impl Shift {
             limit: 0.2 * around.h,
             ..Self::none::<D>(around, speed)
         }
+    }
+
+    /// Whether there is a free surface, which shifts must keep.
+    pub fn keeps_a_surface(&self) -> bool {
+        self.free_surface
     }
 
     fn none<const D: usize>(around: &Surroundings, speed: f64) -> Self {

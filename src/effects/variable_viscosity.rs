@@ -207,7 +207,9 @@ impl Friction {
 /// `2 a b / (a + b)`.
 #[inline(always)]
 fn harmonic_mean<L: Lanes>(a: L, b: L) -> L {
-    // Where neither is viscous there is nothing to divide.
+    // Where neither is viscous there is nothing to divide. Lanes out of reach hold what another sweep has left there, a
+    // pressure of any sign: nothing may come of it that is not finite.
+    let (a, b) = (a.max(L::zero()), b.max(L::zero()));
     L::constant(2.0) * a * b * (a + b).max(L::constant(1e-30)).recip()
 }
 
@@ -311,5 +313,23 @@ impl<R: Real, const D: usize> Pass<R, D> for AtWall {
         out: &mut Output<R>,
     ) {
         self.0.accelerate(own, sums, i, out);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::harmonic_mean;
+
+    #[test]
+    fn the_harmonic_mean_is_finite_beside_what_lanes_out_of_reach_hold() {
+        assert_eq!(harmonic_mean(3.0f32, 6.0), 4.0);
+        assert_eq!(harmonic_mean(0.0f32, 0.0), 0.0);
+        for pressure in [-99.295_425f32, -99.295_42, -1e9, 1e9, 0.0] {
+            let mean = harmonic_mean(99.295_425, pressure);
+            assert!(
+                (0.0..=2.0 * 99.295_425).contains(&mean),
+                "{mean} beside {pressure}"
+            );
+        }
     }
 }

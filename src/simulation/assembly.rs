@@ -21,7 +21,7 @@ use crate::sweep::{Output, Pairs, Pass, Source, SumColumns, Sweep, Sweeper, slot
 use crate::walls::{Extrapolation, Slip, WallMethod};
 
 /// Components of a symmetric matrix.
-const fn matrix<const D: usize>() -> usize {
+pub(super) const fn matrix<const D: usize>() -> usize {
     D * (D + 1) / 2
 }
 
@@ -271,7 +271,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         self.timers.book(Phase::Forces);
-        self.add_facet_forces();
+        self.audited(None, Self::add_facet_forces);
     }
 
     fn forces_with<V: PairTerm<R, D>, W: PairTerm<R, D>>(&mut self, effects: V, friction: W) {
@@ -332,7 +332,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             wall: wall.as_ref(),
             pass: &pass,
         };
-        self.sweeper.run_pairs(self.kernel, &pairs, &columns);
+        [self.budget.contact, ..] = self.sweeper.run_pairs(self.kernel, &pairs, &columns);
     }
 
     /// The sweep of continuity, and of the shift over the step `dt`.
@@ -358,20 +358,23 @@ impl<R: Real, const D: usize> Solver<R, D> {
             }
         }
         self.timers.book(Phase::Continuity);
-        self.add_facet_rates();
+        self.audited(None, Self::add_facet_rates);
     }
 
     fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
-        let speed = self.state.speed;
-        match self.shifting {
+        match self.shift_over(dt) {
             None => self.run_density_rates(diffusion, ()),
-            Some((ShiftingForm::Sun, around)) => {
-                self.run_density_rates(diffusion, Shift::sun::<D>(&around, speed, dt));
-            }
-            Some((ShiftingForm::Lind, around)) => {
-                self.run_density_rates(diffusion, Shift::lind::<D>(&around, speed, dt));
-            }
+            Some(shift) => self.run_density_rates(diffusion, shift),
         }
+    }
+
+    /// Shifting over the step `dt`, if there is any.
+    pub(super) fn shift_over(&self, dt: f64) -> Option<Shift> {
+        let speed = self.state.speed;
+        self.shifting.map(|(form, around)| match form {
+            ShiftingForm::Sun => Shift::sun::<D>(&around, speed, dt),
+            ShiftingForm::Lind => Shift::lind::<D>(&around, speed, dt),
+        })
     }
 
     fn run_density_rates<T: PairTerm<R, D>, S: ShiftTerm<R, D>>(&mut self, diffusion: T, shift: S) {

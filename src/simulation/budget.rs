@@ -1,82 +1,207 @@
 //! The energy budget: what each effect has dissipated.
 //!
-//! Powers are summed in the middle of a step, with what its forces read, once in some steps and in all steps of a
-//! collision, and integrated over time by the trapezoidal rule.
+//! Powers are summed in the middle of a step, with what its forces read, and integrated over time by the trapezoidal
+//! rule. That costs half a step: it is done rarely where powers change little, and often where they jump, for contacts
+//! and impacts last a few steps only.
 
+use super::assembly::matrix;
+use super::catalogue::MOST_STAGES;
 use super::config::{DiffusionForm, ViscosityForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
-    Antuono, ArtificialViscosity, Contact, Diffusion, Dissipation, Fourtakas, Laminar, Molteni,
-    MonaghanGingold, Morris, POWERS, RiemannDiffusion,
+    Antuono, ArtificialViscosity, CONTACT_POWER, Contact, Diffusion, Dissipation, Fourtakas,
+    Laminar, Molteni, MonaghanGingold, Morris, POWERS, RiemannDiffusion, WALL_POWER,
 };
+use crate::eos::EquationOfState;
 use crate::particles::sum;
 use crate::simd::Real;
-use crate::sweep::{Pairs, Source, slot};
+use crate::sweep::{Pairs, Source, Sums, slot};
 use crate::walls::Slip;
 
-/// Steps from one audit to the next.
-const EVERY: u64 = 32;
+/// Most steps from one audit to the next.
+const LONGEST: u64 = 32;
+/// Change of the powers over an interval, times its length, as a share of all that was taken so far, beyond which the
+/// next interval is an eighth of it; below a quarter of that it is twice as long.
+const TOLERANCE: f64 = 0.01;
 
-/// Acceleration, in units of `c0²/Δp`, that only contacts and impacts reach.
-const COLLISION: f64 = 0.01;
+/// The entry of shifting, and the first of stages.
+const SHIFTING: usize = POWERS.len() - 1;
+const STAGES: usize = POWERS.len();
 
-/// Number of entries: those of pairs, and the shift.
-pub(super) const ENTRIES: usize = POWERS.len() + 1;
+/// Number of entries: those of pairs, and as many stages as a scene may have.
+const ENTRIES: usize = STAGES + MOST_STAGES;
 
 /// Energy that effects have taken so far.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Budget {
     /// Taken up to `time`, in J.
-    pub(super) taken: [f64; ENTRIES],
+    taken: [f64; ENTRIES],
     /// Powers at `time`, in W.
-    pub(super) power: [f64; ENTRIES],
+    power: [f64; ENTRIES],
     /// Time of the last audit in s.
-    pub(super) time: f64,
-    /// Whether particles collided in the last step audited.
-    pub(super) collided: bool,
+    time: f64,
+    /// Steps from one audit to the next.
+    interval: u64,
+    /// The step of the next audit.
+    next: u64,
+    /// Power of contacts at walls in the present step, in W.
+    pub(super) contact: f64,
+    /// Whether what runs now is audited.
+    pub(super) listens: bool,
+    /// Powers of the present step, if it is audited.
+    audit: Option<[f64; ENTRIES]>,
 }
 
 impl Budget {
+    /// As many numbers as it is saved in.
+    pub(super) const NUMBERS: usize = 2 * ENTRIES + 3;
+
+    /// To be saved between two steps.
+    pub(super) fn numbers(&self) -> impl Iterator<Item = f64> + '_ {
+        let rest = [self.time, self.interval as f64, self.next as f64];
+        self.taken.into_iter().chain(self.power).chain(rest)
+    }
+
+    /// As it was saved.
+    pub(super) fn saved(numbers: &[f64]) -> Self {
+        let rest = &numbers[2 * ENTRIES..];
+        Budget {
+            taken: std::array::from_fn(|k| numbers[k]),
+            power: std::array::from_fn(|k| numbers[ENTRIES + k]),
+            time: rest[0],
+            interval: rest[1] as u64,
+            next: rest[2] as u64,
+            contact: 0.0,
+            listens: false,
+            audit: None,
+        }
+    }
+
     fn book(&mut self, time: f64, power: [f64; ENTRIES]) {
         // The first powers hold from the start.
         let before = if self.time > 0.0 { self.power } else { power };
+        let (mut taken, mut change) = (0.0, 0.0);
         for k in 0..ENTRIES {
-            self.taken[k] += 0.5 * (before[k] + power[k]) * (time - self.time);
+            let half = 0.5 * (time - self.time);
+            self.taken[k] += half * (before[k] + power[k]);
+            taken += self.taken[k].abs();
+            change += half * (power[k] - before[k]).abs();
         }
         (self.time, self.power) = (time, power);
+        if change > TOLERANCE * taken {
+            self.interval = (self.interval / 8).max(1);
+        } else if change < 0.25 * TOLERANCE * taken {
+            self.interval = (2 * self.interval).clamp(1, LONGEST);
+        }
+        self.next += self.interval;
     }
 
-    /// What has been taken up to `time`, in J, by name.
-    pub(super) fn until(&self, time: f64) -> impl Iterator<Item = (&'static str, f64)> + '_ {
-        POWERS
-            .into_iter()
-            .chain(std::iter::once("particle shifting"))
-            .enumerate()
-            .map(move |(k, name)| (name, self.taken[k] + self.power[k] * (time - self.time)))
+    /// What has been taken up to `time`, in J, by entry.
+    fn until(&self, time: f64) -> [f64; ENTRIES] {
+        std::array::from_fn(|k| self.taken[k] + self.power[k] * (time - self.time))
     }
 }
 
 impl<R: Real, const D: usize> Solver<R, D> {
-    /// Books the powers of the present step, of which half of `dt` is over, if it is its turn: in every step while
-    /// particles collide, for contacts last a few steps only.
-    pub(super) fn audit(&mut self, dt: f64) {
-        let c = &self.config;
-        let collision = COLLISION * c.sound_speed * c.sound_speed / c.spacing;
-        let collides = self.state.acceleration > collision;
-        if !(self.step.is_multiple_of(EVERY) || collides || self.budget.collided) {
+    /// What effects have taken so far, in J, by name.
+    pub(super) fn dissipated(&self) -> Vec<(&'static str, f64)> {
+        let stages = self.stages.iter().map(|s| s.declaration().name);
+        POWERS
+            .into_iter()
+            .chain(stages)
+            .zip(self.budget.until(self.time))
+            .filter(|&(_, energy)| energy != 0.0)
+            .collect()
+    }
+
+    /// Begins the audit of a step, if it is its turn.
+    pub(super) fn begin_audit(&mut self) {
+        if self.step >= self.budget.next {
+            self.budget.next = self.step;
+            self.budget.audit = Some([0.0; ENTRIES]);
+            self.budget.listens = true;
+        }
+    }
+
+    /// Sums the powers of pairs in the middle of the step, with what its forces have read.
+    pub(super) fn audit_pairs(&mut self) {
+        if self.budget.audit.is_some() {
+            let powers = self.powers();
+            self.take(0, &powers);
+            self.timers.book(Phase::Budget);
+        }
+    }
+
+    /// Books what contacts at walls took in a step of `dt`, and ends its audit, after its shift.
+    pub(super) fn end_audit(&mut self, dt: f64) {
+        self.budget.taken[CONTACT_POWER] += self.budget.contact * dt;
+        if self.budget.audit.is_none() {
             return;
         }
-        if collides && !self.budget.collided {
-            // What was found last holds up to the collision.
-            self.budget.book(self.time - 0.5 * dt, self.budget.power);
+        let shifted = self.power_of_shift(dt) + self.power_of_following();
+        self.take(SHIFTING, &[shifted]);
+        self.budget.listens = false;
+        if let Some(power) = self.budget.audit.take() {
+            self.budget.book(self.time + 0.5 * dt, power);
         }
-        self.budget.collided = collides;
-        let mut power = [0.0; ENTRIES];
-        power[..POWERS.len()].copy_from_slice(&self.powers());
-        power[POWERS.len()] = self.power_of_shift();
-        self.budget.book(self.time + 0.5 * dt, power);
         self.timers.book(Phase::Budget);
+    }
+
+    fn take(&mut self, first: usize, powers: &[f64]) {
+        for power in self.budget.audit.iter_mut() {
+            for (entry, p) in power[first..].iter_mut().zip(powers) {
+                *entry += p;
+            }
+        }
+    }
+
+    /// Runs what adds to accelerations or rates of density, and in an audit books what it takes as that of stage `k`, or
+    /// of the walls.
+    pub(super) fn audited(&mut self, stage: Option<usize>, run: impl FnOnce(&mut Self)) {
+        if !self.budget.listens {
+            return run(self);
+        }
+        let before = self.mechanical_power();
+        run(self);
+        let entry = stage.map_or(WALL_POWER, |k| STAGES + k);
+        self.take(entry, &[before - self.mechanical_power()]);
+    }
+
+    /// `Σ m u·a + Σ V p/ρ dρ/dt` in W, with the velocity and the pressure that the last sweep has read.
+    fn mechanical_power(&self) -> f64 {
+        let f = &self.fluid;
+        let rho = self.config.reference_density;
+        let [power] = sum(f.len(), |i| {
+            let along: f64 = (0..D)
+                .map(|a| f.pair_velocity[a][i].to_f64() * f.acceleration[a][i].to_f64())
+                .sum();
+            let density = rho * (1.0 + f.condensation[i].to_f64());
+            let pressure: R = self.motion.eos.pressure(f.condensation[i]);
+            let squeezed = pressure.to_f64() * f.density_rate[i].to_f64() / density;
+            [f.mass[i].to_f64() * along + f.volume[i].to_f64() * squeezed]
+        });
+        power
+    }
+
+    /// Energy that density takes as it follows the concentration of particles beneath a free surface, in W; what it takes
+    /// elsewhere is summed over pairs.
+    fn power_of_following(&self) -> f64 {
+        let fluid = &self.fluid;
+        let shift = self.shift_over(0.0).filter(|s| s.keeps_a_surface());
+        let Some(shift) = shift else {
+            return 0.0;
+        };
+        let [power] = sum(fluid.len(), |i| {
+            let mut sums = Sums::<R, D>::zero();
+            for (k, column) in fluid.sums[..matrix::<D>()].iter().enumerate() {
+                sums.moment[k] = column[i];
+            }
+            let pressure: R = self.motion.eos.pressure(fluid.condensation[i]);
+            let stored = fluid.volume[i] * pressure * shift.source(&sums);
+            [-stored.to_f64() / (1.0 + fluid.condensation[i].to_f64())]
+        });
+        power
     }
 
     /// The effects of the scene whose powers are summed.
@@ -107,15 +232,15 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     self.motion.gravity,
                 )),
             }),
+            following: self.shift_over(0.0).filter(|s| !s.keeps_a_surface()),
             damper: self.motion.bulk_viscosity,
             core: (!matches!(laminar, Some(Laminar::Morris(_))))
                 .then(|| Contact::fluid(c.spacing, D, c0, rho)),
             laminar,
-            contact: Contact::wall(c.spacing, D, c0, rho),
         }
     }
 
-    /// Powers of pairs in W.
+    /// The powers of pairs, in W.
     fn powers(&self) -> [f64; POWERS.len()] {
         let fluid = &self.fluid;
         let mut source = Source::new(&fluid.position, &fluid.cells)
@@ -145,9 +270,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.sweeper.total(self.kernel, &pairs)
     }
 
-    /// Potential energy that the shift of the last step has taken, per time of that step, in W.
-    fn power_of_shift(&self) -> f64 {
-        let Some(shift) = self.fluid.shift.as_ref().filter(|_| self.time_step > 0.0) else {
+    /// Potential energy that the shift over `dt` has taken, per time, in W.
+    fn power_of_shift(&self, dt: f64) -> f64 {
+        let Some(shift) = self.fluid.shift.as_ref().filter(|_| dt > 0.0) else {
             return 0.0;
         };
         let (mass, gravity) = (&self.fluid.mass, self.motion.gravity);
@@ -155,6 +280,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
             let along: f64 = (0..D).map(|a| gravity[a] * shift[a][i].to_f64()).sum();
             [mass[i].to_f64() * along]
         });
-        taken / self.time_step
+        taken / dt
     }
 }

@@ -13,6 +13,9 @@ use crate::simd::Real;
 use crate::step::Limit;
 use crate::walls::{MOVING_WALLS, Slip, WALLS};
 
+/// Most stages that a scene may have.
+pub(super) const MOST_STAGES: usize = 4;
+
 /// The effects with sweeps of their own that the configuration calls for: one line each.
 pub(super) fn stages<R: Real, const D: usize>(
     config: &Config,
@@ -112,14 +115,17 @@ impl<R: Real, const D: usize> Solver<R, D> {
             return;
         }
         let mut least: Option<(f64, Limit)> = None;
-        for stage in &mut self.stages {
-            stage.run(Around {
-                grid: &self.grid,
-                sweeper: &self.sweeper,
-                kernel: self.kernel,
-                fluid: &mut self.fluid,
-                wall: self.wall.as_ref(),
+        for k in 0..self.stages.len() {
+            self.audited(Some(k), |solver| {
+                solver.stages[k].run(Around {
+                    grid: &solver.grid,
+                    sweeper: &solver.sweeper,
+                    kernel: solver.kernel,
+                    fluid: &mut solver.fluid,
+                    wall: solver.wall.as_ref(),
+                });
             });
+            let stage = &self.stages[k];
             let longest = stage.longest_step();
             if let Some(limit) = stage.declaration().limit
                 && least.is_none_or(|l| longest < l.0)

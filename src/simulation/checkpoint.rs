@@ -2,7 +2,7 @@
 //!
 //! The order of the particles and the cells they were sorted into belong to it: they decide the order of every sum.
 
-use super::budget::ENTRIES;
+use super::budget::Budget;
 use super::solver::Solver;
 use crate::error::{Error, Result};
 use crate::particles::Column;
@@ -159,10 +159,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
         // What was read by pairs last: shown by probes until the next step.
         put("volume", widen(&fluid.volume));
         put("pressure", widen(&fluid.pressure));
-        // The last shift: the next audit of the energy reads it.
-        for (a, column) in fluid.shift.iter().flatten().enumerate() {
-            put(&format!("shift_{a}"), widen(column));
-        }
         if let Some(wall) = &self.wall {
             put("wall_pressure", widen(&wall.pressure));
             put("wall_volume", widen(&wall.volume));
@@ -205,9 +201,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 s.density_max,
             ]),
         );
-        let b = &self.budget;
-        let budget = b.taken.iter().chain(&b.power).chain([&b.time]);
-        put("budget", Entry::Reals(budget.copied().collect()));
+        put("budget", Entry::Reals(self.budget.numbers().collect()));
         if !self.stages.is_empty() {
             let (longest, limit) = self
                 .limits
@@ -223,7 +217,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
             u64::from(self.primed),
             self.limit as u64,
             u64::from(s.finite),
-            u64::from(self.budget.collided),
         ];
         counters.extend(self.steps_by_limit);
         put("counters", Entry::Integers(counters));
@@ -260,9 +253,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
         from.table("cells", &mut fluid.cells.offsets, n)?;
         from.column("volume", &mut fluid.volume)?;
         from.column("pressure", &mut fluid.pressure)?;
-        for (a, column) in fluid.shift.iter_mut().flatten().enumerate() {
-            from.column(&format!("shift_{a}"), column)?;
-        }
         if !fluid.cells.offsets.is_sorted() {
             return Err(Error::Input(
                 "checkpoint: cells are not in order; the file is damaged".to_owned(),
@@ -302,15 +292,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
         let s = from.reals("scalars", 8)?;
         (self.time, self.time_step, self.travelled, self.mach_max) = (s[0], s[1], s[2], s[3]);
-        let b = from.reals("budget", 2 * ENTRIES + 1)?;
-        self.budget.taken.copy_from_slice(&b[..ENTRIES]);
-        self.budget.power.copy_from_slice(&b[ENTRIES..2 * ENTRIES]);
-        self.budget.time = b[2 * ENTRIES];
+        self.budget = Budget::saved(from.reals("budget", Budget::NUMBERS)?);
         if !self.stages.is_empty() {
             let stages = from.reals("stages", 2)?;
             self.limits.stages = Limit::ALL.get(stages[1] as usize).map(|l| (stages[0], *l));
         }
-        let c = from.integers("counters", 5 + Limit::ALL.len())?;
+        let c = from.integers("counters", 4 + Limit::ALL.len())?;
         self.step = c[0];
         self.primed = c[1] != 0;
         self.limit = Limit::from_index(c[2]);
@@ -321,8 +308,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             density_max: s[7],
             finite: c[3] != 0,
         };
-        self.steps_by_limit.copy_from_slice(&c[5..]);
-        self.budget.collided = c[4] != 0;
+        self.steps_by_limit.copy_from_slice(&c[4..]);
         self.set_gravity(self.time);
         self.sweeper.wipe();
         let kept = self.restore_guard(&from)?;

@@ -108,11 +108,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             closest_pair: crowding.closest,
             crowded: crowding.crowded,
             leaks: self.boundary.as_ref().map_or(0, |b| b.leaks),
-            dissipated: self
-                .budget
-                .until(self.time)
-                .filter(|&(_, energy)| energy != 0.0)
-                .collect(),
+            dissipated: self.dissipated(),
         }
     }
 }

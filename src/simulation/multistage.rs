@@ -55,7 +55,11 @@ impl<R: Real, const D: usize> System for Solver<R, D> {
     }
 
     fn middle(&mut self, dt: f64) {
-        self.audit(dt);
+        self.begin_audit();
+        self.rates(0.5 * dt, dt);
+        self.audit_pairs();
+        // The rates of a later stage are not of the middle.
+        self.budget.listens = false;
     }
 
     fn arrive(&mut self, weight: f64, dt: f64) {

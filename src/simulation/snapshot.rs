@@ -4,7 +4,7 @@
 //! precision, with the order of the particles; 60 bytes per fluid particle in three dimensions, 44 in two. Rates are
 //! summed anew when it is put back, and masses belong to particles, not to moments.
 
-use super::budget::{Budget, ENTRIES};
+use super::budget::Budget;
 use super::checkpoint::{Entries, Entry, Reader, integers};
 use super::retry::{MEMORY, Memory, Retries, Trouble};
 use super::solver::Solver;
@@ -162,7 +162,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let (m, s) = (&self.guard.memory, &kept.scalars);
         let mut put = |name: String, entry: Entry| out.push((name, entry));
         let mut counters = vec![m.attempts, m.calm, m.patience, m.record.undone, s.step];
-        counters.extend([s.limit as u64, u64::from(s.budget.collided)]);
+        counters.push(s.limit as u64);
         counters.extend(s.steps_by_limit);
         counters.extend(m.silent_until);
         counters.extend(m.record.retries);
@@ -177,8 +177,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             s.mach_max,
         ];
         scalars.extend(m.energies);
-        scalars.extend(s.budget.taken.iter().chain(&s.budget.power));
-        scalars.push(s.budget.time);
+        scalars.extend(s.budget.numbers());
         put("guard_scalars".to_owned(), Entry::Reals(scalars));
         for a in 0..D {
             let (x, v) = (&kept.position[a], &kept.velocity[a]);
@@ -207,9 +206,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if from.integers("guard", 0).is_ok() {
             return Ok(false);
         }
-        let counters = from.integers("guard", 7 + LIMITS + 3 * KINDS)?;
-        let reals = from.reals("guard_scalars", 7 + MEMORY + 2 * ENTRIES)?;
-        let (head, rest) = counters.split_at(7);
+        let counters = from.integers("guard", 6 + LIMITS + 3 * KINDS)?;
+        let reals = from.reals("guard_scalars", 6 + MEMORY + Budget::NUMBERS)?;
+        let (head, rest) = counters.split_at(6);
         let (by_limit, rest) = rest.split_at(LIMITS);
         let table = |k: usize| std::array::from_fn(|t| rest[k * KINDS + t]);
         self.guard.memory = Memory {
@@ -234,12 +233,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             step: head[4],
             limit: Limit::from_index(head[5]),
             steps_by_limit: std::array::from_fn(|k| by_limit[k]),
-            budget: Budget {
-                taken: std::array::from_fn(|k| reals[6 + MEMORY + k]),
-                power: std::array::from_fn(|k| reals[6 + MEMORY + ENTRIES + k]),
-                time: reals[6 + MEMORY + 2 * ENTRIES],
-                collided: head[6] != 0,
-            },
+            budget: Budget::saved(&reals[6 + MEMORY..]),
         };
         for a in 0..D {
             from.column(&format!("guard_position_{a}"), &mut kept.position[a])?;

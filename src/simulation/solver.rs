@@ -280,6 +280,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             self.travelled += longest;
             self.timers.book(Phase::Shift);
         }
+        self.end_audit(dt);
         self.keep_inside(self.time + dt);
         self.check(dt)
     }
@@ -297,9 +298,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.timers.book(Phase::Integrate);
         self.move_walls(self.time + 0.5 * dt);
         self.update_walls();
+        self.begin_audit();
         self.sum_forces();
         self.run_stages();
-        self.audit(dt);
+        self.audit_pairs();
         let speed = self.motion.second_half(&mut self.fluid, dt);
         self.travelled += 0.5 * dt * speed;
         self.timers.book(Phase::Integrate);

@@ -94,7 +94,8 @@ pub trait System {
     /// Finds the rates of the present state, of the time `since` (s) after the start of the step of `dt` (s).
     fn rates(&mut self, since: f64, dt: f64);
 
-    /// Looks at the middle of the step, whose rates have just been found.
+    /// Finds the rates of the present state, which is that of the middle of the step of `dt` (s) as well as it is known,
+    /// and looks at them.
     fn middle(&mut self, dt: f64);
 
     /// Goes to the outcome: `y0`, the sum, and `weight · f` with the rates found last, `dt` (s) after the start.

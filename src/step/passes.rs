@@ -3,7 +3,8 @@
 use crate::effects::{Contact, Continuity, DensityGradient, PairTerm, Pressure, Shift};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{
-    Other, Output, Own, Pair, PairPass, Pass, Splat, Sums, Tally, Uses, relative_velocity,
+    ALONE, Other, Output, Own, Pair, PairPass, Pass, Splat, Sums, Tally, Totals, Uses,
+    relative_velocity,
 };
 
 /// Acceleration by pressure and by the effects `V`, at walls by `W`; with `G`, the gradient of the condensation too.
@@ -53,7 +54,9 @@ impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: 
         tally: &mut Tally<L, D>,
     ) {
         Pressure.add(pair, own, other, tally);
-        self.contact.add(pair, own, other, tally);
+        let push = self.contact.push(pair, own, other);
+        tally.push(push);
+        tally.account(ALONE, -(push * dot(&own.velocity(), &pair.separation)));
         self.friction.add(pair, own, other, tally);
     }
 
@@ -65,6 +68,12 @@ impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: 
         if self.gradient.uses().gradient {
             sums.gradient = DensityGradient::finish(sums);
         }
+    }
+
+    /// What contact at walls takes, in W: it comes and goes within a few steps, too fast for the audits of other effects.
+    #[inline(always)]
+    fn collect(&self, own: &Own<R, D>, sums: &Sums<R, D>, totals: &mut Totals) {
+        totals[0] += own.values().volume().to_f64() * sums.scalar.to_f64();
     }
 }
 

@@ -14,7 +14,6 @@ pub fn predictor_corrector<S: System>(system: &mut S, dt: f64) -> Result<(), S::
     system.stage(0.5 * dt, 0.0)?;
     system.rates(0.5 * dt, dt);
     system.stage(0.5 * dt, 0.0)?;
-    system.rates(0.5 * dt, dt);
     system.middle(dt);
     system.arrive(dt, dt);
     Ok(())

@@ -11,7 +11,6 @@ pub fn runge_kutta_2<S: System>(system: &mut S, dt: f64) -> Result<(), S::Troubl
     system.begin()?;
     system.rates(0.0, dt);
     system.stage(0.5 * dt, 0.0)?;
-    system.rates(0.5 * dt, dt);
     system.middle(dt);
     system.arrive(dt, dt);
     Ok(())

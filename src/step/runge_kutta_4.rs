@@ -13,7 +13,6 @@ pub fn runge_kutta_4<S: System>(system: &mut S, dt: f64) -> Result<(), S::Troubl
     system.stage(0.5 * dt, dt / 6.0)?;
     system.rates(0.5 * dt, dt);
     system.stage(0.5 * dt, dt / 3.0)?;
-    system.rates(0.5 * dt, dt);
     system.middle(dt);
     system.stage(dt, dt / 3.0)?;
     system.rates(dt, dt);

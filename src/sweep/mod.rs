@@ -23,7 +23,7 @@ mod workspace;
 pub use pair::{Other, Own, Pair, Splat, relative_velocity, slot};
 pub use pairs::{PairPass, Pairs, Totals};
 pub use single::Single;
-pub use sums::{SumColumns, Sums, Tally, Uses};
+pub use sums::{ALONE, SumColumns, Sums, Tally, Uses};
 
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
@@ -182,13 +182,13 @@ impl<R: Real> Sweeper<R> {
         }
     }
 
-    /// Runs a pass over pairs with `kernel`; what it leaves stands in `columns`, which belong to the set.
+    /// Runs a pass over pairs with `kernel`; what it leaves stands in `columns`, which belong to the set. Gives its totals.
     pub fn run_pairs<P: PairPass<R, D>, const D: usize>(
         &self,
         kernel: KernelName,
         pairs: &Pairs<R, P, D>,
         columns: &SumColumns<R>,
-    ) {
+    ) -> Totals {
         let n = pairs.fluid.position[0].len();
         let used = pairs.pass.uses().columns::<D>();
         let each = |work: &(dyn Fn(Range<usize>) + Sync)| for_ranges(n, || (), |(), ()| (), work);
@@ -203,9 +203,7 @@ impl<R: Real> Sweeper<R> {
                 }
             }
         });
-        Blocks::new(pairs.grid, self.per_cell, n).for_each(|_, cells| {
-            self.block(kernel, pairs, cells, columns);
-        });
+        let totals = self.blocks(kernel, pairs, columns);
         each(&|range| {
             // Known here again, for the compiler to see which are used.
             let used = pairs.pass.uses().columns::<D>();
@@ -226,6 +224,7 @@ impl<R: Real> Sweeper<R> {
                 }
             }
         });
+        totals
     }
 
     /// Sums over all pairs, by a pass that [collects](PairPass::collect) them.
@@ -234,14 +233,22 @@ impl<R: Real> Sweeper<R> {
         kernel: KernelName,
         pairs: &Pairs<R, P, D>,
     ) -> Totals {
-        let n = pairs.fluid.position[0].len();
-        let blocks = Blocks::new(pairs.grid, self.per_cell, n);
+        self.blocks(kernel, pairs, &SumColumns::default())
+    }
+
+    /// Runs a pass block by block. Totals are added in the order of blocks, whoever computed them.
+    fn blocks<P: PairPass<R, D>, const D: usize>(
+        &self,
+        kernel: KernelName,
+        pairs: &Pairs<R, P, D>,
+        columns: &SumColumns<R>,
+    ) -> Totals {
+        let blocks = Blocks::new(pairs.grid, self.per_cell, pairs.fluid.position[0].len());
         let mut parts = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
         parts.resize(blocks.count(), Totals::default());
         let each = Shared::new(&mut parts);
-        let nothing = SumColumns::default();
         blocks.for_each(|k, cells| {
-            let totals = self.block(kernel, pairs, cells, &nothing);
+            let totals = self.block(kernel, pairs, cells, columns);
             // SAFETY: every block has a place of its own.
             unsafe { each.write(k, totals) };
         });

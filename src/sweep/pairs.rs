@@ -49,7 +49,7 @@ pub trait PairPass<R: Real, const D: usize>: Sync {
 }
 
 /// Totals over all pairs.
-pub type Totals = [f64; 6];
+pub type Totals = [f64; 7];
 
 /// One pass over pairs.
 pub struct Pairs<'a, R, P, const D: usize> {

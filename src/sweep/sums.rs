@@ -22,6 +22,9 @@ pub struct Sums<L, const D: usize> {
     pub matrix: [[L; D]; D],
 }
 
+/// The number of the scalar for [`Tally::account`].
+pub const ALONE: usize = 6;
+
 /// Which of them a pass uses.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Uses {
@@ -148,11 +151,13 @@ impl<'a, L: Lanes, const D: usize> Tally<'a, L, D> {
         self.share = share;
     }
 
-    /// `c` per volume of both, into component `k` of the matrix of the one alone: for totals over pairs.
+    /// `c` per volume of both, into component `k` of the matrix of the one alone, or behind these into the scalar: for
+    /// totals over pairs.
     #[inline(always)]
     pub fn account(&mut self, k: usize, c: L) {
         let weight = self.share * self.other_volume;
-        self.own.moment[k] = weight.mul_add(c, self.own.moment[k]);
+        let total = self.own.column_mut((7 + k) % SUMS);
+        *total = weight.mul_add(c, *total);
     }
 
     /// What `term` gives both particles of a pair, per volume of the other: the force density on the one, and the rates
