@@ -85,9 +85,9 @@ fn costless_viscosity<const D: usize>(c: &Config) -> f64 {
 /// Every effect that kolk knows, and whether the configuration calls for it.
 pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
     let gravity = c.gravity.is_some() || !c.gravity_over_time.is_empty();
-    let antuono = c
-        .density_diffusion
-        .is_some_and(|d| matches!(d.form, DiffusionForm::Antuono | DiffusionForm::Riemann));
+    let form = c.density_diffusion.map(|d| d.form);
+    let riemann = form == Some(DiffusionForm::Riemann);
+    let gradient = riemann || form == Some(DiffusionForm::Antuono);
     let remedy = |form| c.tensile_control.is_some_and(|t| t.form == form);
     vec![
         (PRESSURE, true),
@@ -96,7 +96,13 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
         (LAMINAR_VISCOSITY, c.laminar_viscosity.is_some()),
         (HerschelBulkley::DECLARATION, c.herschel_bulkley.is_some()),
         (Smagorinsky::DECLARATION, c.turbulence.is_some()),
-        (density_diffusion(antuono), c.density_diffusion.is_some()),
+        (
+            Declaration {
+                limit: riemann.then_some(Limit::Viscous),
+                ..density_diffusion(gradient)
+            },
+            c.density_diffusion.is_some(),
+        ),
         (ACOUSTIC_DAMPER, c.acoustic_damper.is_some()),
         (PARTICLE_SHIFTING, c.shifting.is_some()),
         (RIEMANN_VISCOSITY, c.riemann_viscosity),
