@@ -39,6 +39,7 @@ static LEVEL: AtomicU8 = AtomicU8::new(0);
 
 /// The levels that this machine can run, narrowest first.
 pub fn available_levels() -> Vec<Level> {
+    #[cfg_attr(not(target_arch = "x86_64"), allow(unused_mut))]
     let mut levels = vec![Level::Baseline];
     #[cfg(target_arch = "x86_64")]
     {

@@ -46,11 +46,12 @@ EVERYWHERE: dict[str, tuple[Any, ...]] = {
     "precision": ("f64",),
     "density_diffusion": ("molteni", "none"),
     "shifting": ("none",),
+    "integrator": ("predictor-corrector", "rk4"),
     "courant": (0.25,),
 }
-"""Choices that every flow has; half the Courant number shows what the integrator is wrong by."""
+"""Choices that every flow has; half the Courant number shows what the time step is wrong by."""
 
-SURFACE: dict[str, tuple[Any, ...]] = {"wall": ("dynamic",), "acoustic_damper": (0.0,)}
+SURFACE: dict[str, tuple[Any, ...]] = {"wall": ("dynamic", "modified-dynamic"), "acoustic_damper": (0.0,)}
 """Choices of flows with walls and a free surface."""
 
 SUBJECTS = (
