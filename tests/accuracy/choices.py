@@ -51,7 +51,10 @@ EVERYWHERE: dict[str, tuple[Any, ...]] = {
 }
 """Choices that every flow has; half the Courant number shows what the time step is wrong by."""
 
-SURFACE: dict[str, tuple[Any, ...]] = {"wall": ("dynamic", "modified-dynamic"), "acoustic_damper": (0.0,)}
+SURFACE: dict[str, tuple[Any, ...]] = {
+    "wall": ("dynamic", "modified-dynamic"),
+    "acoustic_damper": (0.0,),
+}
 """Choices of flows with walls and a free surface."""
 
 SUBJECTS = (

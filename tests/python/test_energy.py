@@ -33,8 +33,8 @@ def lost_and_taken(sim: kolk.Simulation, until: float) -> tuple[float, float]:
 
 @pytest.mark.parametrize("precision", ["mixed", "f64"])
 def test_a_collapse_loses_what_its_effects_take(precision: str) -> None:
-    # With shifting, density that follows it, walls, contacts, diffusion, damper and artificial viscosity. The powers
-    # are sampled, and those of contacts and walls flicker: hence the bound, which any one of them would miss.
+    # With shifting, density that follows it, walls, contacts, diffusion, damper and viscosity. The
+    # powers are sampled, and those of walls flicker: hence the bound.
     scene = kolk.load("dam-break").replace(spacing=0.01)
     lost, taken = lost_and_taken(kolk.Simulation(scene, precision=precision, threads=1), 0.7)
     assert lost > 0.0
