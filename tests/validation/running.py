@@ -24,25 +24,31 @@ THREADS = int(os.environ.get("KOLK_VALIDATION_THREADS", "1"))
 """The figures do not depend on it: a run has the same bits for every number of threads."""
 
 
+PRECISION: Literal["f64", "mixed"] = "mixed"
+"""Of the runs of a case that does not choose its own: the default of a user."""
+
+
 @contextmanager
 def finished_run(
-    scene: kolk.Scene, precision: Literal["f64", "mixed"] = "mixed"
+    scene: kolk.Scene, precision: Literal["f64", "mixed"] | None = None
 ) -> Iterator[kolk.Run]:
     """The finished run of ``scene``; its folder lasts as long as the context."""
     with tempfile.TemporaryDirectory(prefix="kolk-validation-") as folder:
         yield kolk.run(
             scene,
             Path(folder) / "run",
-            precision=precision,
+            precision=precision or PRECISION,
             threads=THREADS,
             quiet=True,
             pictures=False,
         )
 
 
-def simulation(scene: kolk.Scene, precision: Literal["f64", "mixed"] = "mixed") -> kolk.Simulation:
+def simulation(
+    scene: kolk.Scene, precision: Literal["f64", "mixed"] | None = None
+) -> kolk.Simulation:
     """A simulation of ``scene`` on the suite's threads."""
-    return kolk.Simulation(scene, precision=precision, threads=THREADS)
+    return kolk.Simulation(scene, precision=precision or PRECISION, threads=THREADS)
 
 
 def probe(run: kolk.Run, name: str, column: str = "value") -> tuple[FloatArray, FloatArray]:
