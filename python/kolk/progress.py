@@ -6,8 +6,11 @@ mode. All of it goes to standard error, so that standard output holds the result
 
 from __future__ import annotations
 
+import contextlib
 import sys
 import time as clock
+from collections.abc import Iterator
+from contextvars import ContextVar
 from types import TracebackType
 from typing import Any
 
@@ -16,6 +19,24 @@ PATIENCE = 2.0
 
 PLAIN_INTERVAL = 10.0
 """Seconds between two lines where there is no terminal."""
+
+
+_silent: ContextVar[bool] = ContextVar("silent", default=False)
+
+
+@contextlib.contextmanager
+def silence(wanted: bool = True) -> Iterator[None]:
+    """No progress of work that a caller cannot tell to be quiet, such as filling a scene."""
+    token = _silent.set(wanted or _silent.get())
+    try:
+        yield
+    finally:
+        _silent.reset(token)
+
+
+def is_silent() -> bool:
+    """Whether this happens within :func:`silence`."""
+    return _silent.get()
 
 
 class Progress:
@@ -45,14 +66,19 @@ class Progress:
 
     def update(self, time: float, steps: int, time_step: float) -> None:
         """Time reached (s), steps taken, last time step (s)."""
+        share = (time - self.start) / max(self.until - self.start, 1e-300)
+        self.show(
+            share, f"t = {time:.4g} of {self.until:g} s, step {steps:,}, Δt = {time_step:.3g} s"
+        )
+
+    def show(self, share: float, text: str) -> None:
+        """Share of the work that is done, and in words where it stands."""
         if self.quiet:
             return
         now = clock.monotonic()
         if now < self._begun + PATIENCE:
             return
-        share = (time - self.start) / max(self.until - self.start, 1e-300)
         left = (now - self._begun) * (1.0 - share) / share if share > 0.0 else float("inf")
-        text = f"t = {time:.4g} of {self.until:g} s, step {steps:,}, Δt = {time_step:.3g} s"
         if sys.stderr.isatty():
             self._draw(share, f"{text}, {duration(left)} left")
         elif now >= self._next_line:

@@ -17,6 +17,7 @@ from kolk.output.checkpoint import read_checkpoint
 from kolk.output.folder import RunFolder, free_folder, newest_folder
 from kolk.output.recorder import Recorder, Stopwatch
 from kolk.probes import build_probes
+from kolk.progress import silence
 from kolk.results import Run
 from kolk.simulation import DEFAULT_PRECISION, Precision, Simulation
 
@@ -61,7 +62,7 @@ def run(
         kept = checkpoint.book["precision"] if checkpoint is not None else DEFAULT_PRECISION
         precision = cast("Precision", kept)
     watch = Stopwatch()
-    with watch.phase("set-up"):
+    with watch.phase("set-up"), silence(quiet):
         simulation = Simulation(scene, precision=precision, threads=threads)
         probes = build_probes(scene, simulation)
     if folder is not None:

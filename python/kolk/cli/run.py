@@ -73,22 +73,24 @@ def run(
     """Run a scene; its results go into a folder."""
     from kolk import runner
     from kolk.cli.closing import closing
+    from kolk.progress import silence
 
     found = find_scene(scene, settings or [], spacing=spacing, until=until)
     promise = None
     if tolerance is not None or budget is not None:
         from kolk.cli.promises import promised
 
-        promise = promised(
-            found,
-            tolerance,
-            budget,
-            quantity,
-            fixed=spacing is not None or resume,
-            precision=cast("Precision | None", precision),
-            threads=threads,
-            quiet=quiet,
-        )
+        with silence(quiet):
+            promise = promised(
+                found,
+                tolerance,
+                budget,
+                quantity,
+                fixed=spacing is not None or resume,
+                precision=cast("Precision | None", precision),
+                threads=threads,
+                quiet=quiet,
+            )
         found, precision = promise.scene, promise.precision
     if resume and out is None:
         out = run_folder(scene)

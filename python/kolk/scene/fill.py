@@ -2,6 +2,7 @@
 
 Fluid is filled on a cell-centred lattice, half a cell from the faces of a box. A wall is filled
 with as many layers behind its surface as the kernel reaches, the first half a cell behind it.
+Where a scene asks for it, particles in shapes that no lattice fits are packed instead (`packing`).
 """
 
 from __future__ import annotations
@@ -16,11 +17,13 @@ import numpy.typing as npt
 from kolk.errors import Problem, SceneError
 
 from . import material
+from .automatic import FACETS
 from .base import LARGEST
 from .expression import Expression
 from .memory import check_memory
 from .model import Scene
 from .overlap import check_places
+from .packing import Distance, Placed, Unsettled, pack
 from .parts import Fluid, Wall
 from .shapes import Box, Shape, Tank
 from .surface import wall_surface
@@ -70,13 +73,21 @@ class _Part:
     position: FloatArray
     volume: float
     steps: FloatArray
+    bounds: tuple[FloatArray, FloatArray] | None = None
+    """Corners of a packed shape, from whose top its particles are not half a step away."""
 
 
 def fill(scene: Scene) -> Filling:
     """All particles of ``scene``, checked. Raises SceneError."""
     check_memory(scene)
-    fluids = [_fluid_part(scene, f) for f in scene.fluid]
     walls = [_wall_part(scene, w) for w in scene.wall]
+    # Walls of facets have no particles that fluid could feel: a solid without gaps.
+    felt = [] if scene.numerics.wall in FACETS else zip(scene.wall, walls, strict=True)
+    placed = [other for wall, part in felt for other in _placed(wall, part)]
+    fluids: list[_Part] = []
+    for fluid in scene.fluid:
+        fluids.append(_fluid_part(scene, fluid, placed))
+        placed += _placed(fluid, fluids[-1])
     check_places(scene, [p.position for p in fluids], [p.position for p in walls])
     velocities = [_velocity(scene, f, p.position) for f, p in zip(scene.fluid, fluids, strict=True)]
     speed = _expected_speed(scene, velocities, walls)
@@ -108,7 +119,17 @@ def _error(path: tuple[str, ...], message: str) -> SceneError:
     return SceneError(problems=[Problem(path, message)])
 
 
-def _fluid_part(scene: Scene, fluid: Fluid) -> _Part:
+def _placed(body: Fluid | Wall, part: _Part) -> list[Placed]:
+    """A body as others are packed against it: none where the steps of its lattice leave gaps."""
+    if body.shape is None:
+        return []
+    shape = body.shape.shape
+    if part.bounds is None and not isinstance(shape, (Box, Tank)):
+        return []
+    return [Placed(shape.distance, part.position, part.volume)]
+
+
+def _fluid_part(scene: Scene, fluid: Fluid, others: Sequence[Placed]) -> _Part:
     cell = np.full(scene.dimension, scene.spacing)
     if fluid.particles is not None:
         part = _Part(fluid.particles.position.copy(), scene.spacing**scene.dimension, cell)
@@ -127,19 +148,49 @@ def _fluid_part(scene: Scene, fluid: Fluid) -> _Part:
                 f"{thinnest:g} m across at its thinnest: use {thinnest / 10:.2g} m for ten "
                 f"particles across, at most {thinnest / FEWEST_ACROSS:.2g} m",
             )
-        points, steps = lattice(shape, scene.spacing)
-        inside = points if isinstance(shape, Box) else points[shape.contains(points)]
-        if len(inside) == 0:
-            raise _error(
-                where,
-                f"is empty: no particle fits into it at a spacing of {scene.spacing:g} m. "
-                "Check its corners, or refine spacing",
-            )
-        part = _Part(inside, float(np.prod(steps)), steps)
+        if fluid.arrangement == "packed" and not isinstance(shape, Box):
+            part = _packed(scene, fluid, shape.distance, (low, high), shape.exact_size(), others)
+        else:
+            points, steps = lattice(shape, scene.spacing)
+            inside = points if isinstance(shape, Box) else points[shape.contains(points)]
+            part = _Part(inside, float(np.prod(steps)), steps)
+        if len(part.position) == 0:
+            raise _empty(scene, where)
     if fluid.jitter > 0.0:
         shift = np.random.default_rng(fluid.seed).uniform(-1.0, 1.0, part.position.shape)
         part.position = _wrapped(scene, part.position + fluid.jitter * scene.spacing * shift)
     return part
+
+
+def _empty(scene: Scene, where: tuple[str, ...]) -> SceneError:
+    return _error(
+        where,
+        f"is empty: no particle fits into it at a spacing of {scene.spacing:g} m. "
+        "Check its corners, or refine spacing",
+    )
+
+
+def _packed(
+    scene: Scene,
+    body: Fluid | Wall,
+    distance: Distance,
+    bounds: tuple[FloatArray, FloatArray],
+    volume: float | None,
+    others: Sequence[Placed] = (),
+) -> _Part:
+    try:
+        position, own = pack(
+            distance, *bounds, scene.spacing, volume=volume, others=others, name=body.name
+        )
+    except Unsettled as error:
+        kind = "fluid" if isinstance(body, Fluid) else "wall"
+        raise _error(
+            (kind, body.name, "arrangement"),
+            f'found "packed", but the particles find no even distribution: {error}. Refine '
+            "spacing, so that the thinnest parts of the shape are several particles across, or use "
+            '"lattice"',
+        ) from None
+    return _Part(position, own, np.full(scene.dimension, scene.spacing), bounds)
 
 
 def _wrapped(scene: Scene, position: FloatArray) -> FloatArray:
@@ -150,12 +201,30 @@ def _wrapped(scene: Scene, position: FloatArray) -> FloatArray:
     return position
 
 
+def _is_packed(scene: Scene) -> bool:
+    """Whether walls are packed: packed fluid and the steps of a lattice do not fit each other."""
+    return scene.numerics.wall not in FACETS and any(f.arrangement == "packed" for f in scene.fluid)
+
+
 def _wall_part(scene: Scene, wall: Wall) -> _Part:
     if wall.particles is not None:
         cell = np.full(scene.dimension, scene.spacing)
         return _Part(wall.particles.position.copy(), scene.spacing**scene.dimension, cell)
     assert wall.shape is not None
     shape = wall.shape.shape
+    where = ("wall", wall.name, "shape", wall.shape.kind)
+    if _is_packed(scene) and not isinstance(shape, (Box, Tank)):
+        # What lies deeper than the kernel reaches is never felt.
+        thickness = scene.wall_layers * scene.spacing
+
+        def layer(points: FloatArray) -> FloatArray:
+            depth = shape.distance(points)
+            return np.maximum(depth, -depth - thickness)
+
+        part = _packed(scene, wall, layer, shape.bounds(thickness), None)
+        if len(part.position) == 0:
+            raise _empty(scene, where)
+        return part
     along = shape.layers(scene.spacing, scene.wall_layers)
     if along is not None and len(along):
         cell = np.full(scene.dimension, scene.spacing)
@@ -167,11 +236,7 @@ def _wall_part(scene: Scene, wall: Wall) -> _Part:
         # What lies deeper than the kernel reaches is never felt.
         keep &= distance > -scene.wall_layers * scene.spacing
     if not keep.any():
-        raise _error(
-            ("wall", wall.name, "shape", wall.shape.kind),
-            f"is empty: no particle fits into it at a spacing of {scene.spacing:g} m. "
-            "Check its corners, or refine spacing",
-        )
+        raise _empty(scene, where)
     return _Part(points[keep], float(np.prod(steps)), steps)
 
 
@@ -295,9 +360,12 @@ def _pressure(scene: Scene, fluid: Fluid, part: _Part, sound_speed: float) -> Fl
         return _values(("fluid", fluid.name, "pressure"), given, part.position, 1)
     up = -scene.weight / strength
     height = part.position @ up
+    surface = float(height.max() + 0.5 * np.abs(up) @ part.steps)
+    if part.bounds is not None and np.count_nonzero(up) == 1:
+        surface = max(float(corner @ up) for corner in part.bounds)
     return material.hydrostatic_pressure(
         height,
-        float(height.max() + 0.5 * np.abs(up) @ part.steps),
+        surface,
         gravity=strength,
         reference_density=fluid.density,
         sound_speed=sound_speed,

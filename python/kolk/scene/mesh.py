@@ -120,6 +120,9 @@ class Mesh(FromFile):
         a, b, c = np.moveaxis(self.triangles(), 1, 0)
         return float(np.sum(a * np.cross(b, c)) / 6.0)
 
+    def exact_size(self) -> float | None:
+        return None if self.hollow() or self.offset else self.size()
+
     def dimensions(self) -> set[int]:
         return {3}
 
@@ -174,6 +177,11 @@ class Outline(FromFile):
         if self.hollow():
             return super().size()
         return float(sum(abs(distance.polygon_area(ring)) for ring in self.rings()))
+
+    def exact_size(self) -> float | None:
+        # A ring within a ring is a hole, whose area counts twice too much.
+        whole = not self.hollow() and not self.offset and len(self.rings()) == 1
+        return self.size() if whole else None
 
     def dimensions(self) -> set[int]:
         return {2}

@@ -146,6 +146,9 @@ class _Body(Model):
             raise SceneError(
                 problems=[Problem(("shape",), f"{found}: give a shape, or own particles instead")]
             )
+        if self.particles is not None and getattr(self, "arrangement", None) == "packed":
+            message = 'found "packed", but own particles stay where they are: leave it out'
+            raise SceneError(problems=[Problem(("arrangement",), message)])
         return self
 
 
@@ -166,6 +169,11 @@ class Fluid(_Body):
     eos: Literal["tait", "linear"] = "tait"
     gamma: Annotated[Real, Field(ge=1)] = Field(
         default=7.0, description="exponent of the Tait equation"
+    )
+    arrangement: Literal["lattice", "packed"] = Field(
+        default="lattice",
+        description="of the particles at the start: on a lattice, or relaxed (packed), for shapes "
+        "that are curved or slanted: then of walls, too; a box and a tank keep their lattice",
     )
     jitter: Annotated[Real, Field(ge=0, lt=0.5)] = Field(
         default=0.0, description="largest random shift of a particle at the start, in spacings"

@@ -51,6 +51,10 @@ class Shape(Model):
         low, high = self.bounds()
         return float(np.prod(np.maximum(high - low, 0.0)))
 
+    def exact_size(self) -> float | None:
+        """:meth:`size` where that is exact, else None."""
+        return None
+
     def layers(self, spacing: float, count: int) -> FloatArray | None:
         """Particles (n, D) of a wall in ``count`` layers along the surface, the first half a
         spacing behind it; None for those of the lattice."""
@@ -127,6 +131,9 @@ class Box(FromTo):
 
     def distance(self, points: FloatArray) -> FloatArray:
         return distance.box(points, *self.bounds())
+
+    def exact_size(self) -> float | None:
+        return self.size()
 
     def axes(self, spacing: float, layers: int = 0) -> list[Axis]:
         """The lattice is stretched to divide the box: particles keep half a cell to every face."""
@@ -213,6 +220,9 @@ class Sphere(Shape):
             math.pi if len(self.centre) == 2 else 4 / 3 * math.pi * self.radius
         ) * self.radius**2
 
+    def exact_size(self) -> float | None:
+        return self.size()
+
     def dimensions(self) -> set[int]:
         return {len(self.centre)}
 
@@ -264,6 +274,9 @@ class Cylinder(Shape):
 
     def size(self) -> float:
         return math.pi * self.radius**2 * math.dist(self.from_, self.to)
+
+    def exact_size(self) -> float | None:
+        return self.size()
 
     def dimensions(self) -> set[int]:
         return {3}
@@ -321,6 +334,9 @@ class Polygon(Shape):
             if self.to is not None and self.from_ is not None
             else area
         )
+
+    def exact_size(self) -> float | None:
+        return self.size()
 
     def dimensions(self) -> set[int]:
         return {2} if self.from_ is None else {3}

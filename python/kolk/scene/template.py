@@ -30,6 +30,7 @@ sound_speed = "auto"               # from the largest expected speed and depth
 viscosity = { artificial = 0.02 }  # and/or { laminar = 1e-6 }; leave it out and there is none
 # velocity = [0.0, 0.0]            # numbers, or expressions such as ["0.1*y", 0.0]
 # pressure = "hydrostatic"         # or "zero", or an expression in Pa
+# arrangement = "packed"           # for curved and slanted shapes: relaxed, not on a lattice
 
 # Walls: a tank leaves a box free; any other shape is a solid.
 [[wall]]

@@ -44,7 +44,7 @@ def save(scene: Scene, path: Path) -> None:
                 full = Particles(body.position, mass=body.mass)
             full.save(file)
             # The particles are as they start: nothing is left to evaluate or to shift.
-            for key in ("shape", "jitter", "seed"):
+            for key in ("shape", "arrangement", "jitter", "seed"):
                 entry.pop(key, None)
             if table == "fluid":
                 for key in ("velocity", "pressure"):
