@@ -21,6 +21,9 @@ use crate::walls::Slip;
 
 /// Most steps from one audit to the next.
 const LONGEST: u64 = 32;
+/// There are no more audits than one in so many steps, and some ahead of their time: each costs half a step.
+const ON_AVERAGE: u64 = 24;
+const AHEAD: u64 = 8;
 /// Change of the powers over an interval, times its length, as a share of all that was taken so far, beyond which the
 /// next interval is an eighth of it; below a quarter of that it is twice as long.
 const TOLERANCE: f64 = 0.01;
@@ -45,6 +48,8 @@ pub(super) struct Budget {
     interval: u64,
     /// The step of the next audit.
     next: u64,
+    /// Audits so far.
+    audits: u64,
     /// Power of contacts at walls in the present step, in W.
     pub(super) contact: f64,
     /// Whether what runs now is audited.
@@ -55,12 +60,13 @@ pub(super) struct Budget {
 
 impl Budget {
     /// As many numbers as it is saved in.
-    pub(super) const NUMBERS: usize = 2 * ENTRIES + 3;
+    pub(super) const NUMBERS: usize = 2 * ENTRIES + 4;
 
     /// To be saved between two steps.
     pub(super) fn numbers(&self) -> impl Iterator<Item = f64> + '_ {
-        let rest = [self.time, self.interval as f64, self.next as f64];
-        self.taken.into_iter().chain(self.power).chain(rest)
+        let counts = [self.interval, self.next, self.audits].map(|n| n as f64);
+        let sums = self.taken.into_iter().chain(self.power);
+        sums.chain([self.time]).chain(counts)
     }
 
     /// As it was saved.
@@ -72,6 +78,7 @@ impl Budget {
             time: rest[0],
             interval: rest[1] as u64,
             next: rest[2] as u64,
+            audits: rest[3] as u64,
             contact: 0.0,
             listens: false,
             audit: None,
@@ -94,7 +101,9 @@ impl Budget {
         } else if change < 0.25 * TOLERANCE * taken {
             self.interval = (2 * self.interval).clamp(1, LONGEST);
         }
-        self.next += self.interval;
+        self.audits += 1;
+        let earned = ON_AVERAGE * self.audits.saturating_sub(AHEAD);
+        self.next = (self.next + self.interval).max(earned);
     }
 
     /// What has been taken up to `time`, in J, by entry.

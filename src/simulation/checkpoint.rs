@@ -292,7 +292,14 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
         let s = from.reals("scalars", 8)?;
         (self.time, self.time_step, self.travelled, self.mach_max) = (s[0], s[1], s[2], s[3]);
-        self.budget = Budget::saved(from.reals("budget", Budget::NUMBERS)?);
+        let budget = from.reals("budget", Budget::NUMBERS)?;
+        if !budget.iter().all(|x| x.is_finite()) {
+            return Err(Error::Input(
+                "checkpoint: the energy budget holds numbers that are none; the file is damaged"
+                    .to_owned(),
+            ));
+        }
+        self.budget = Budget::saved(budget);
         if !self.stages.is_empty() {
             let stages = from.reals("stages", 2)?;
             self.limits.stages = Limit::ALL.get(stages[1] as usize).map(|l| (stages[0], *l));

@@ -25,6 +25,9 @@ def injected(step: int) -> tuple[int, list[str], int]:
     for name, column in good.items():
         if name.startswith("guard") or column.dtype.kind != "f" or len(column) < 20:
             continue
+        if name == "budget":  # of no particle: not taken over in the first place
+            missed += not_refused(sim, good, name)
+            continue
         for value in (np.nan, np.inf, -np.inf):
             state = dict(good)
             state[name] = column.copy()
@@ -44,6 +47,22 @@ def injected(step: int) -> tuple[int, list[str], int]:
                 left += sum(int((~np.isfinite(v)).sum()) for v in after if v.dtype.kind == "f")
             sim.restore(good)
     return tried, missed, left
+
+
+def not_refused(sim: kolk.Simulation, good: dict[str, np.ndarray], name: str) -> list[str]:
+    """The injections into a column that were taken over."""
+    taken = []
+    for value in (np.nan, np.inf):
+        state = dict(good)
+        state[name] = good[name].copy()
+        state[name][-1] = value
+        try:
+            sim.restore(state)
+            taken.append(f"{name} = {value}")
+        except KolkError:
+            pass
+        sim.restore(good)
+    return taken
 
 
 def refused() -> int:
