@@ -66,10 +66,7 @@ pub const POWERS: [&str; 7] = [
     "particle shifting",
 ];
 
-/// The entry of contact; between fluid particles here, at walls it is a total of the sweep of forces.
-pub const CONTACT_POWER: usize = 4;
-
-/// The entry of walls.
+/// The entry of walls: here what moving ones hand over; contact and pressure at walls are a total of the sweep of forces.
 pub const WALL_POWER: usize = 5;
 
 impl<const D: usize> Dissipation<D> {
@@ -185,8 +182,8 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
             dot(&own.velocity(), &pair.separation),
             dot(&moves, &pair.separation),
         );
-        let handed = pair.slope * (other.pressure() * out + fluid_pressure * back);
-        tally.account(5, handed - given);
+        tally.account(3, L::constant(self.damper) * own.rate() * pair.slope * out);
+        tally.account(5, pair.slope * fluid_pressure * back - given);
     }
 
     #[inline(always)]

@@ -30,7 +30,7 @@ pub use contact::{CONTACT, Contact};
 pub use continuity::Continuity;
 pub use declaration::{Declaration, Quantity};
 pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni, density_diffusion};
-pub use dissipation::{CONTACT_POWER, Diffusion, Dissipation, Laminar, POWERS, WALL_POWER};
+pub use dissipation::{Diffusion, Dissipation, Laminar, POWERS, WALL_POWER};
 pub use herschel_bulkley::{HerschelBulkley, HerschelBulkleyConfig};
 pub use laminar_viscosity::{LAMINAR_VISCOSITY, MonaghanGingold, Morris, fastest_decay};
 pub use particle_shifting::{

@@ -332,7 +332,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             wall: wall.as_ref(),
             pass: &pass,
         };
-        [self.budget.contact, ..] = self.sweeper.run_pairs(self.kernel, &pairs, &columns);
+        [self.budget.walls, ..] = self.sweeper.run_pairs(self.kernel, &pairs, &columns);
     }
 
     /// The sweep of continuity, and of the shift over the step `dt`.

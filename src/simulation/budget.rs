@@ -10,8 +10,8 @@ use super::config::{DiffusionForm, ViscosityForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
-    Antuono, ArtificialViscosity, CONTACT_POWER, Contact, Diffusion, Dissipation, Fourtakas,
-    Laminar, Molteni, MonaghanGingold, Morris, POWERS, RiemannDiffusion, WALL_POWER,
+    Antuono, ArtificialViscosity, Contact, Diffusion, Dissipation, Fourtakas, Laminar, Molteni,
+    MonaghanGingold, Morris, POWERS, RiemannDiffusion, WALL_POWER,
 };
 use crate::eos::EquationOfState;
 use crate::particles::sum;
@@ -50,8 +50,8 @@ pub(super) struct Budget {
     next: u64,
     /// Audits so far.
     audits: u64,
-    /// Power of contacts at walls in the present step, in W.
-    pub(super) contact: f64,
+    /// Power of contact and pressure at walls in the present step, in W.
+    pub(super) walls: f64,
     /// Whether what runs now is audited.
     pub(super) listens: bool,
     /// Powers of the present step, if it is audited.
@@ -79,7 +79,7 @@ impl Budget {
             interval: rest[1] as u64,
             next: rest[2] as u64,
             audits: rest[3] as u64,
-            contact: 0.0,
+            walls: 0.0,
             listens: false,
             audit: None,
         }
@@ -142,9 +142,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
     }
 
-    /// Books what contacts at walls took in a step of `dt`, and ends its audit, after its shift.
+    /// Books what walls took in a step of `dt`, and ends its audit, after its shift.
     pub(super) fn end_audit(&mut self, dt: f64) {
-        self.budget.taken[CONTACT_POWER] += self.budget.contact * dt;
+        self.budget.taken[WALL_POWER] += self.budget.walls * dt;
         if self.budget.audit.is_none() {
             return;
         }

@@ -56,7 +56,8 @@ impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: 
         Pressure.add(pair, own, other, tally);
         let push = self.contact.push(pair, own, other);
         tally.push(push);
-        tally.account(ALONE, -(push * dot(&own.velocity(), &pair.separation)));
+        let out = dot(&own.velocity(), &pair.separation);
+        tally.account(ALONE, (pair.slope * other.pressure() - push) * out);
         self.friction.add(pair, own, other, tally);
     }
 
@@ -70,7 +71,7 @@ impl<R: Real, V: PairTerm<R, D>, W: PairTerm<R, D>, G: PairTerm<R, D>, const D: 
         }
     }
 
-    /// What contact at walls takes, in W: it comes and goes within a few steps, too fast for the audits of other effects.
+    /// What walls take, in W, by contact and by pressure: it flickers too fast for the audits of other effects.
     #[inline(always)]
     fn collect(&self, own: &Own<R, D>, sums: &Sums<R, D>, totals: &mut Totals) {
         totals[0] += own.values().volume().to_f64() * sums.scalar.to_f64();
