@@ -42,6 +42,15 @@ def test_nothing_is_told_of_a_good_scene() -> None:
     assert check(calm(wall=walls(0.0))).warnings == ()
 
 
+def test_what_kolk_chose_is_told_with_its_reason() -> None:
+    words = str(check(calm(numerics={"shifting": "none"})))
+    chosen = words.partition("chosen by kolk:\n")[2]
+    assert re.search(r"numerics\.density_diffusion = antuono: keeps pressure free of noise", chosen)
+    assert re.search(r"fluid\.water\.sound_speed = [\d.]+: ten times", chosen)
+    # What the scene says itself is no choice of kolk's.
+    assert "numerics.shifting" not in chosen
+
+
 @pytest.mark.parametrize("spacings", [1.0, 1.5, 3.0, 5.0])
 def test_a_gap_is_found_with_its_place_and_width(spacings: float) -> None:
     gap = spacings * SPACING

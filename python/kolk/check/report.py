@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from kolk.scene import Body, Scene
+from kolk.scene.automatic import Choice, choices
 from kolk.scene.memory import BYTES_PER_PARTICLE, available
 from kolk.scene.parts import Wall
 
@@ -44,10 +45,6 @@ class Report:
     bodies: tuple[BodyReport, ...]
     sound_speed: float
     """m/s"""
-    automatic: bool
-    """Whether the sound speed was chosen, and from which speed:"""
-    expected_speed: float
-    """m/s; 0 where the scene gives the sound speed."""
     until: float
     """s"""
     time_step: float
@@ -56,6 +53,8 @@ class Report:
     """Bytes, about."""
     memory_free: int
     """Bytes that are free now."""
+    choices: tuple[Choice, ...]
+    """What the scene may leave to kolk, and what came of it."""
     warnings: tuple[str, ...]
 
     @property
@@ -80,12 +79,11 @@ def check(scene: Scene) -> Report:
         neighbours=numbers.neighbours(scene),
         bodies=tuple(_body(scene, body) for body in bodies),
         sound_speed=scene.sound_speed,
-        automatic=scene.fluid[0].sound_speed == "auto",
-        expected_speed=scene.filling.expected_speed,
         until=scene.until,
         time_step=numbers.time_step(scene)[0],
         memory=BYTES_PER_PARTICLE * sum(len(b) for b in bodies),
         memory_free=available(),
+        choices=choices(scene),
         warnings=(
             *numbers.warnings(scene, bodies),
             *walls.warnings(scene, bodies),
@@ -135,8 +133,7 @@ def _words(report: Report) -> str:
             f"{spans} m"
             + (f", {body.mass:.4g} kg{'/m' if d == 2 else ''}" if body.kind == "fluid" else "")
         )
-    reason = f" (automatic: ten times {report.expected_speed:.4g} m/s)" if report.automatic else ""
-    lines.append(f"  sound speed {report.sound_speed:.4g} m/s{reason}")
+    lines.append(f"  sound speed {report.sound_speed:.4g} m/s")
     lines.append(
         f"  until {report.until:.4g} s: about {report.until / report.time_step:,.0f} steps of "
         f"{report.time_step:.3g} s"
@@ -145,6 +142,8 @@ def _words(report: Report) -> str:
         f"  about {_bytes(report.memory)} for {report.particles:,} particles, "
         f"{_bytes(report.memory_free)} free"
     )
+    lines.append("  chosen by kolk:")
+    lines += [f"    {choice}" for choice in report.choices if choice.automatic]
     lines += [f"  warning: {w}" for w in report.warnings]
     if not report.warnings:
         lines.append("  no warnings")

@@ -68,10 +68,22 @@ def draw(
 def _draw_plain(axes: Axes, time: FloatArray, table: pd.DataFrame, about: str) -> None:
     columns = [c for c in table.columns if c != "time"]
     inks = (style.RUN, style.SECOND, style.REFERENCE, style.QUIET)
-    for column, ink in zip(columns, inks, strict=False):
+    moments = [c for c in columns if c.startswith("moment")]
+    for column, ink in zip([c for c in columns if c not in moments], inks, strict=False):
         value = table[column].to_numpy(np.float64)
         label = "kolk" if column == "value" else f"kolk, {column}"
         axes.plot(time, value, color=ink, lw=1.2, label=label)
+    if moments:
+        # A moment is no force: it has a scale of its own.
+        about, _, unit = about.partition(", ")
+        about += "]" if unit else ""
+        right = axes.twinx()
+        right.tick_params(length=0)
+        right.set_ylabel(f"moment [{unit}" if unit else "moment")
+        for column, ink in zip(moments, inks[2:] + inks[:2], strict=False):
+            value = table[column].to_numpy(np.float64)
+            right.plot(time, value, color=ink, lw=1.0, ls="--")
+            axes.plot([], [], color=ink, lw=1.0, ls="--", label=f"kolk, {column} (right)")
     axes.set_xlabel("t [s]")
     axes.set_ylabel(about)
 
@@ -206,7 +218,8 @@ def probe_picture(
     """One probe as a PNG, its reference drawn in where there is one."""
     with style.look():
         made = style.figure(7.0, 3.8)
-        axes = made.add_axes((0.1, 0.14, 0.87, 0.75))
+        scales = 1 + any(column.startswith("moment") for column in table.columns)
+        axes = made.add_axes((0.1, 0.14, 0.94 - 0.07 * scales, 0.75))
         draw(axes, table, match, about, shift, also=also)
         axes.set_title(name if match is None else f"{name}: {records.reference_of(match).title}")
         return style.save(made, path)
