@@ -82,16 +82,24 @@ def test_oil_stays_out_of_the_gears_and_holds_them_back():
     simulation = Simulation(case.scene, threads=0)
     simulation.advance(1.2 * gearbox.RUN_UP)
     torques = {name: [] for name in TEETH}
-    for _ in range(10):
-        simulation.advance(0.002)
-        assert oil_in_gears(simulation, gearbox.HOUSING) < 0.1 * spacing
+    before, time = simulation.energy, 0.02
+    for row in range(40):
+        simulation.advance(time / 40)
+        if row % 4 == 0:
+            assert oil_in_gears(simulation, gearbox.HOUSING) < 0.1 * spacing
         for name in TEETH:
             found = simulation.force(name)
             lever = np.array(CENTRES[name])
             x, y = found["force"]
             torques[name].append(float(found["moment"][0]) - (lever[0] * y - lever[1] * x))
-    for name in TEETH:
-        assert np.mean(torques[name]) * rate(name) < 0.0
+    powers = {name: -float(np.mean(torques[name])) * rate(name) for name in TEETH}
+    assert min(powers.values()) > 0.0
+    assert simulation.leaks == 0
+    # Torque times speed is what walls hand over by the energy budget, and nothing gets lost.
+    after, work = simulation.energy, time * sum(powers.values())
+    taken = {k: e - before.dissipated[k] for k, e in after.dissipated.items()}
+    assert -taken["walls"] == pytest.approx(work, rel=0.15)
+    assert after.total - before.total + sum(taken.values()) == pytest.approx(0.0, abs=0.1 * work)
     assert not simulation.mach_warning
 
 

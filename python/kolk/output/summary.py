@@ -82,7 +82,7 @@ def energy_budget(initial: Mapping[str, float], diagnostics: Mapping[str, Any]) 
     """Energy at the start and now, what the effects dissipated, and what is unaccounted for, J.
 
     `unaccounted` is the total now plus what was dissipated minus the total at the start: the error
-    of the scheme, the work of moving walls, and what open ends carry away.
+    of the scheme and of the sampling of powers. `walls` is negative where walls that move do work.
     """
     final = energy_record(diagnostics)
     dissipated = {str(k): float(v) for k, v in dict(diagnostics["dissipated"]).items()}
