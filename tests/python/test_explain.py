@@ -66,6 +66,46 @@ def test_taking_an_effect_away_takes_that_one_away(entry):
     assert after <= before
 
 
+BARE = tank(numerics={"density_diffusion": "none", "shifting": "none", "acoustic_damper": 0.0})
+"""A scene without an effect that could be left out, but for gravity and walls."""
+
+CALLED_FOR = {
+    "artificial viscosity": {"fluid.water.viscosity": {"artificial": 0.1}},
+    "laminar viscosity": {"fluid.water.viscosity": {"laminar": 0.01}},
+    "acoustic damper": {"numerics.acoustic_damper": 0.3},
+    "turbulence": {"fluid.water.viscosity": {"turbulence": 0.12}},
+    "Herschel-Bulkley": {
+        "fluid.water.viscosity": {"herschel_bulkley": {"yield_stress": 1.0, "consistency": 1.0}}
+    },
+    "density diffusion": {"numerics.density_diffusion": "antuono"},
+    "particle shifting": {"numerics.shifting": "sun"},
+    "tensile control": {"numerics.tensile_control": "sun"},
+    "moving walls": {"wall.tank.motion": {"translate": {"velocity": [0.1, 0.0]}}},
+}
+"""What calls for an effect."""
+
+
+def test_an_effect_that_is_off_holds_no_byte():
+    memory = Simulation(BARE, threads=1).memory
+    # Acceleration and rate of density are D + 1 columns of pair precision; velocity, volume,
+    # pressure and condensation D + 3: no other column is there.
+    assert memory["fluid pair columns"] / memory["fluid rates"] == (2 + 3) / (2 + 1)
+    assert not {"stages", "integrator"} & memory.keys()
+
+
+@pytest.mark.parametrize("name", CALLED_FOR)
+def test_an_effect_holds_what_it_says(name):
+    without, having = (
+        Simulation(scene, threads=1) for scene in (BARE, BARE.replace(CALLED_FOR[name]))
+    )
+    effects = {e["name"]: e for e in having.effects}
+    assert on(having.effects) - on(without.effects) == {name}
+    held = sum(having.memory.values()) - sum(without.memory.values())
+    said = effects[name]["bytes_per_particle"]
+    assert held >= said * having.particles["wall" if name == "moving walls" else "fluid"]
+    assert (held > 0) == (said > 0)
+
+
 def test_parts_add_up_to_the_whole():
     found = explain(FULL, seconds=3.0)
     assert found.pilot is not None

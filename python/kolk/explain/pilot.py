@@ -104,15 +104,36 @@ class _Variant:
     """A scene with some effects."""
 
     make: Callable[[], _core.Simulation]
-    times: list[float] = field(default_factory=list)
+    spent: list[float] = field(default_factory=list)
     """Processor seconds per step, one value a round."""
+    audits: list[float] = field(default_factory=list)
+    """Share of the audits in them."""
+
+    @property
+    def times(self) -> list[float]:
+        """Processor seconds per step without audits, one value a round.
+
+        Phases are told in wall time, which other programs stretch: the share, the same in every
+        round but for that, is the median.
+        """
+        share = statistics.median(self.audits)
+        return [(1.0 - share) * spent for spent in self.spent]
 
     def run(self, steps: int) -> None:
         """One round: made anew, warm, and timed."""
         engine = self.make()
+        before = _phases(engine)
         start = time.process_time()
         engine.advance_to(FOR_EVER, steps)
-        self.times.append((time.process_time() - start) / steps)
+        taken = time.process_time() - start
+        phases = {name: spent - before.get(name, 0.0) for name, spent in _phases(engine).items()}
+        self.spent.append(taken / steps)
+        self.audits.append(phases.get("budget", 0.0) / sum(phases.values()))
+
+
+def _phases(engine: _core.Simulation) -> dict[str, float]:
+    """Seconds by phase so far."""
+    return {name: float(spent["seconds"]) for name, spent in engine.timings().items()}
 
 
 def measure(
@@ -155,7 +176,9 @@ def _take_turns(
         variant.run(2)
     # Making a variant costs about five of its steps.
     steps = STEPS if seconds > 0.0 else 2
-    each = (steps + 5) * sum(variant.times.pop() for variant in variants)
+    each = (steps + 5) * sum(variant.spent.pop() for variant in variants)
+    for variant in variants:
+        variant.audits.clear()
     rounds = max(FEWEST, min(MOST_ROUNDS, int(seconds / each)))
     say(f"{len(variants)} variants, {rounds} rounds of {steps} steps")
     # Another order every time: what a variant leaves behind in caches and in memory must not always
