@@ -39,6 +39,7 @@ def calm(**changes: object) -> Scene:
 
 def test_nothing_is_told_of_a_good_scene() -> None:
     assert check(calm()).warnings == ()
+    assert check(tank(numerics={"scheme": "riemann"})).warnings == ()
     assert check(calm(wall=walls(0.0))).warnings == ()
 
 

@@ -170,7 +170,7 @@ def _time(scene: Scene, bodies: list[Body]) -> list[str]:
 
 
 def _viscosity(scene: Scene) -> list[str]:
-    if scene.fluid[0].viscosity is None:
+    if scene.fluid[0].viscosity is None and automatic.scheme(scene).value != "riemann":
         return [
             "the fluid has no viscosity: nothing damps noise. For free-surface flow "
             "viscosity = { artificial = 0.02 } is usual"

@@ -122,7 +122,8 @@ def _quadratic_term(scene: Scene) -> Advice | None:
 
 def _no_viscosity(scene: Scene) -> Advice | None:
     free = automatic.free_surface(scene).value
-    if scene.fluid[0].viscosity is not None or not free:
+    damped = scene.fluid[0].viscosity is not None or automatic.scheme(scene).value == "riemann"
+    if damped or not free:
         return None
     return Advice(
         "add",

@@ -104,36 +104,40 @@ class _Variant:
     """A scene with some effects."""
 
     make: Callable[[], _core.Simulation]
-    spent: list[float] = field(default_factory=list)
+    times: list[float] = field(default_factory=list)
     """Processor seconds per step, one value a round."""
-    audits: list[float] = field(default_factory=list)
-    """Share of the audits in them."""
+    plan: list[tuple[bool, int]] = field(default_factory=list)
+    """Whether steps are timed, and how many of them follow each other: the same in every round."""
 
-    @property
-    def times(self) -> list[float]:
-        """Processor seconds per step without audits, one value a round.
+    def prepare(self, steps: int) -> float:
+        """Find out which steps are audited, until ``steps`` are not; gives the time taken in s."""
+        start = time.process_time()
+        engine = self.make()
+        audits = _audits(engine)
+        while sum(count for timed, count in self.plan if timed) < steps:
+            engine.advance_to(FOR_EVER, 1)
+            before, audits = audits, _audits(engine)
+            timed = audits == before
+            alike = self.plan.pop()[1] if self.plan and self.plan[-1][0] == timed else 0
+            self.plan.append((timed, alike + 1))
+        return time.process_time() - start
 
-        Phases are told in wall time, which other programs stretch: the share, the same in every
-        round but for that, is the median.
-        """
-        share = statistics.median(self.audits)
-        return [(1.0 - share) * spent for spent in self.spent]
-
-    def run(self, steps: int) -> None:
+    def run(self) -> None:
         """One round: made anew, warm, and timed."""
         engine = self.make()
-        before = _phases(engine)
-        start = time.process_time()
-        engine.advance_to(FOR_EVER, steps)
-        taken = time.process_time() - start
-        phases = {name: spent - before.get(name, 0.0) for name, spent in _phases(engine).items()}
-        self.spent.append(taken / steps)
-        self.audits.append(phases.get("budget", 0.0) / sum(phases.values()))
+        taken, steps = 0.0, 0
+        for timed, count in self.plan:
+            start = time.process_time()
+            engine.advance_to(FOR_EVER, count)
+            if timed:
+                taken += time.process_time() - start
+                steps += count
+        self.times.append(taken / steps)
 
 
-def _phases(engine: _core.Simulation) -> dict[str, float]:
-    """Seconds by phase so far."""
-    return {name: float(spent["seconds"]) for name, spent in engine.timings().items()}
+def _audits(engine: _core.Simulation) -> float:
+    """How often powers have been summed so far."""
+    return engine.timings().get("budget", {"calls": 0})["calls"]
 
 
 def measure(
@@ -172,13 +176,8 @@ def _take_turns(
     variants: Sequence[_Variant], seconds: float, say: Callable[[str], None] = lambda text: None
 ) -> tuple[int, int]:
     """Time all variants, turn by turn; gives the rounds and the steps of each."""
-    for variant in variants:
-        variant.run(2)
-    # Making a variant costs about five of its steps.
     steps = STEPS if seconds > 0.0 else 2
-    each = (steps + 5) * sum(variant.spent.pop() for variant in variants)
-    for variant in variants:
-        variant.audits.clear()
+    each = sum(variant.prepare(steps) for variant in variants)
     rounds = max(FEWEST, min(MOST_ROUNDS, int(seconds / each)))
     say(f"{len(variants)} variants, {rounds} rounds of {steps} steps")
     # Another order every time: what a variant leaves behind in caches and in memory must not always
@@ -186,7 +185,7 @@ def _take_turns(
     turns = random.Random(1)
     for _ in range(rounds):
         for variant in turns.sample(variants, len(variants)):
-            variant.run(steps)
+            variant.run()
     return rounds, steps
 
 
@@ -291,13 +290,14 @@ def _evaluated(
     times = {name: [scale * t for t in v.times] for name, v in variants.items()}
     measured = [entry.name for entry in running if entry.name not in unmeasured]
     costs: dict[str, Interval] = {}
+    # Walls that move cannot stay when walls go: they are what goes first and comes last.
+    both = {"walls", "moving walls"} <= set(measured)
     for name in measured:
-        moving = name == "moving walls" and "walls" in measured
         rounds = zip(
-            times["whole"],
+            times["whole less moving walls" if both and name == "walls" else "whole"],
             times[f"whole less {name}"],
             times[f"base and {name}"],
-            times["base and walls" if moving else "base"],
+            times["base and walls" if both and name == "moving walls" else "base"],
             strict=True,
         )
         costs[name] = Interval.of(
