@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from kolk._core import all_pairs as all_pairs
     from kolk._core import density_diffusion as density_diffusion
     from kolk._core import divergence as divergence
+    from kolk._core import free_surface as free_surface
     from kolk._core import gradient as gradient
     from kolk._core import interpolate as interpolate
     from kolk._core import kernel as kernel
@@ -59,6 +60,7 @@ _HOMES = {
         "all_pairs",
         "density_diffusion",
         "divergence",
+        "free_surface",
         "gradient",
         "interpolate",
         "kernel",

@@ -13,6 +13,7 @@ __all__ = [
     "all_pairs",
     "density_diffusion",
     "divergence",
+    "free_surface",
     "gradient",
     "interpolate",
     "kernel",
@@ -149,6 +150,15 @@ def particle_shift(
     free_surface: bool = True,
     periodic: _Periods = None,
 ) -> _Floats: ...
+def free_surface(
+    position: ArrayLike,
+    mass: ArrayLike,
+    density: ArrayLike,
+    h: float,
+    kernel: _KernelName | str = "wendland-c2",
+    *,
+    periodic: _Periods = None,
+) -> tuple[NDArray[np.bool_], _Floats, _Floats]: ...
 
 @final
 class Simulation:

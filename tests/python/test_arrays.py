@@ -206,6 +206,25 @@ def test_particle_shift() -> None:
     assert free[rim, 1].mean() > 3 * abs(kept[rim, 1]).mean()
 
 
+def test_free_surface() -> None:
+    # Rings of particles: the outermost face outwards, the innermost inwards, no other is surface.
+    ring = np.concatenate([np.full(round(2 * np.pi * (k + 0.5)), k) for k in range(6, 18)])
+    turn = np.concatenate(
+        [np.arange(n) / n + 0.3 * k for k in range(6, 18) for n in [round(2 * np.pi * (k + 0.5))]]
+    )
+    outwards = np.stack([np.cos(2 * np.pi * turn), np.sin(2 * np.pi * turn)], axis=1)
+    position = SPACING * (ring + 0.5)[:, None] * outwards
+    count = len(position)
+    mass, density = np.full(count, 1000 * SPACING**2), np.full(count, 1000.0)
+    on, normal, eigenvalue = kolk.free_surface(position, mass, density, 2 * SPACING)
+    assert on.dtype == np.bool_
+    np.testing.assert_array_equal(on, (ring == 6) | (ring == 17))
+    along = np.sum(normal * outwards, axis=1)
+    assert along[ring == 17].min() > 0.99
+    assert along[ring == 6].max() < -0.99
+    assert eigenvalue[on].max() < 0.75 < eigenvalue[(ring > 8) & (ring < 15)].min()
+
+
 # --- inputs ------------------------------------------------------------------------------------
 
 
@@ -235,6 +254,7 @@ def calls() -> dict[str, tuple[Callable[..., Any], dict[str, Any]]]:
             kolk.particle_shift,
             {**cloud, "spacing": SPACING, "time_step": 0.1, "speed": 1.0},
         ),
+        "free_surface": (kolk.free_surface, cloud),
     }
 
 
@@ -382,6 +402,7 @@ def test_no_particles_give_no_results() -> None:
     assert kolk.neighbours(none, 1.0)[0].tolist() == [0]
     assert kolk.gradient(none, empty, empty, empty, 1.0).shape == (0, 3)
     assert kolk.particle_shift(none, empty, empty, 1.0, 1.0, form="lind").shape == (0, 3)
+    assert [len(x) for x in kolk.free_surface(none, empty, empty, 1.0)] == [0, 0, 0]
     assert kolk.interpolate([[0.0] * 3], none, empty, empty, empty, 1.0).tolist() == [0.0]
 
 

@@ -102,6 +102,8 @@ def call_everything(cloud: dict[str, Any]) -> None:
     assert found is None or len(found) == len(cloud["points"])
     attempt(kolk.density_diffusion, x, cloud["mass"], cloud["density"], h, 10.0, **common)
     attempt(kolk.particle_shift, x, cloud["mass"], cloud["density"], h, h, **common)
+    surface = attempt(kolk.free_surface, x, cloud["mass"], cloud["density"], h, **common)
+    assert surface is None or len(surface[0]) == len(x)
     attempt(kolk.tait_pressure, cloud["density"], h, h)
     attempt(kolk.tait_density, cloud["density"], h, h)
     made = attempt(kolk.kernel, kernel, x.shape[1])

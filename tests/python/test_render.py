@@ -140,6 +140,23 @@ def test_ranges_and_labels(frames: list[MadeFrame]) -> None:
     assert quantity.spread(frames[:2], 4) == [0, 1]
 
 
+def test_the_free_surface_is_the_side_without_a_wall() -> None:
+    # A block of water on a floor, against a wall on its left.
+    water = lattice((0.0, 0.4), (0.0, 0.3))
+    wall = lattice((-0.08, 0.6), (-0.08, 0.5))
+    wall = wall[(wall[:, 0] < 0.0) | (wall[:, 1] < 0.0)]
+    frame = MadeFrame(0.0, np.concatenate([water, wall]), len(water), {})
+    shown = quantity.FreeSurface(
+        "free surface", "", 1.0, 2 * SPACING, "wendland-c2", SPACING, (None, None)
+    )
+    x, on = shown.of(frame)
+    np.testing.assert_array_equal(x, water)
+    right, top = x[:, 0] > 0.4 - SPACING, x[:, 1] > 0.3 - SPACING
+    # Where the surface meets a wall it may be called either.
+    met = (x[:, 0] < 2 * SPACING) & top | (x[:, 1] < 2 * SPACING) & right
+    np.testing.assert_array_equal((on == 1.0)[~met], (right | top)[~met])
+
+
 def test_units_suit_the_values() -> None:
     def slow(size: float) -> MadeFrame:
         x = lattice((0.0, 0.2), (0.0, 0.2))
@@ -284,6 +301,7 @@ def test_render_run_draws_everything(tmp_path: Path, frames: list[MadeFrame]) ->
         "pressure.png",
         "field-pressure.png",
         "field-speed.png",
+        "field-free-surface.png",
         "probe-P1.png",
         "probe-P2.png",
     }
@@ -298,8 +316,9 @@ def test_a_run_of_ones_own_needs_no_reference(tmp_path: Path, frames: list[MadeF
     table = pd.DataFrame({"time": [0.0, 0.1], "x": [0.0, 1.0], "moment": [0.0, 0.1]})
     run = MadeRun(scene, tmp_path, frames, {"load": table})
     names = [p.name for p in render.render_run(run, film=True, quiet=True)]
-    assert names[:3] == ["flow.png", "field-speed.png", "probe-load.png"]
-    assert names[3].startswith("film.")
+    assert names[:3] == ["flow.png", "field-speed.png", "field-free-surface.png"]
+    assert names[3] == "probe-load.png"
+    assert names[4].startswith("film.")
 
 
 def test_a_surge_that_never_arrives_is_drawn_too(tmp_path: Path) -> None:

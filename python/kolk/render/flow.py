@@ -24,7 +24,7 @@ LEFT, RIGHT, BOTTOM, TOP, GAP = 0.55, 0.2, 0.5, 1.2, 0.36
 def frame_picture(
     frame: FrameLike,
     path: Path,
-    field: str = "speed",
+    field: str | Quantity = "speed",
     *,
     spacing: float,
     title: str = "",
@@ -34,7 +34,7 @@ def frame_picture(
     width: float = 8.0,
 ) -> Path:
     """One field of one frame as a PNG. ``spacing`` in m, ``width`` in inches."""
-    shown = quantity(field, scales, [frame])
+    shown = field if isinstance(field, Quantity) else quantity(field, scales, [frame])
     area = area or extent([frame], spacing)
     with style.look():
         scale = shown_range or colour_range(shown, [frame])

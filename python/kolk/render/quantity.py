@@ -58,6 +58,37 @@ class Quantity:
         return x, value / self.unit
 
 
+@dataclass(frozen=True)
+class FreeSurface(Quantity):
+    """1 for the particles of the free surface, 0 inside (:func:`kolk.free_surface`).
+
+    The particles of walls count as neighbours: a wall is no free surface.
+    """
+
+    smoothing_length: float
+    """m."""
+    kernel: str
+    spacing: float
+    """m."""
+    periods: tuple[tuple[float, float] | None, ...]
+
+    def of(self, frame: FrameLike) -> tuple[FloatArray, FloatArray]:
+        from kolk import free_surface
+
+        x = np.asarray(frame.position, np.float64)
+        volume = np.full(len(x), self.spacing ** x.shape[1])
+        on, _, _ = free_surface(
+            x,
+            volume,
+            np.ones(len(x)),
+            self.smoothing_length,
+            self.kernel,
+            periodic=self.periods,
+        )
+        wet = frame.rows("fluid")
+        return x[wet], on[wet].astype(np.float64)
+
+
 _PREFIXES = (("k", 1e3), ("", 1.0), ("m", 1e-3), ("µ", 1e-6))
 
 

@@ -15,7 +15,7 @@ from kolk.compare.records import RunLike
 
 from . import curves, exact, flow, space
 from .film import film_path, flow_film
-from .quantity import Scales
+from .quantity import FreeSurface, Quantity, Scales
 
 if TYPE_CHECKING:
     from kolk.cases import Comparison
@@ -108,11 +108,24 @@ class Studio:
         if not self.flat or not len(self.run.frames):
             return []
 
-        def job(name: str) -> Callable[[], Path]:
+        def job(name: str, shown: str | Quantity) -> Callable[[], Path]:
             path = self.folder / f"field-{name}.png"
-            return lambda: flow.frame_picture(self.run.frames[-1], path, name, **self._common())
+            return lambda: flow.frame_picture(self.run.frames[-1], path, shown, **self._common())
 
-        return [job(name) for name in self._shown()]
+        jobs = [job(name, name) for name in self._shown()]
+        scene = self.run.scene
+        if scene.free_surface:
+            surface = FreeSurface(
+                "free surface",
+                "free surface (1) and inside (0)",
+                1.0,
+                float(scene.smoothing_length),
+                str(scene.kernel),
+                self.spacing,
+                tuple(scene.periodic_axes),
+            )
+            jobs.append(job("free-surface", surface))
+        return jobs
 
     def _probes(self) -> list[Callable[[], Path]]:
         matches = {

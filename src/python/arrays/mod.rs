@@ -6,6 +6,7 @@
 mod density_diffusion;
 mod derivatives;
 mod eos;
+mod free_surface;
 mod input;
 mod interpolate;
 mod kernel;
@@ -53,5 +54,6 @@ pub(super) fn register(module: &Bound<'_, PyModule>) -> PyResult<()> {
         module
     )?)?;
     module.add_function(wrap_pyfunction!(particle_shift::particle_shift, module)?)?;
+    module.add_function(wrap_pyfunction!(free_surface::free_surface, module)?)?;
     Ok(())
 }
