@@ -280,7 +280,7 @@ fn a_moving_wall_takes_along_what_is_in_its_way() {
 #[test]
 fn walls_without_particles_carry_the_weight_of_the_fluid() {
     // Hydrostatic pressure in a tank filled to the brim: the force on its floor is the weight, on its sides ρ g H²/2.
-    for method in ["semi-analytical", "penalty"] {
+    for method in ["semi-analytical", "penalty", "mirror"] {
         let mut scene = common::tank_of::<2>(40, 20, 0.05, 0.0)
             .with(json!({"wall": {"method": method, "slip": "free"}, "smoothing_length": 0.1}));
         scene.fluid().velocity.fill(0.0);
@@ -304,7 +304,7 @@ fn walls_without_particles_carry_the_weight_of_the_fluid() {
 
 fn same_bits<const D: usize>() {
     let tank = [surface_of("tank", &faces([0.0; D], [1.0; D], true, &[]))];
-    for method in ["modified-dynamic", "semi-analytical", "penalty"] {
+    for method in ["modified-dynamic", "semi-analytical", "penalty", "mirror"] {
         for precision in [Precision::F64, Precision::Mixed] {
             let scene = closed_box::<D>(if D == 2 { 24 } else { 10 }, |x| 1000.0 + 2.0 * x[0])
                 .with(json!({"wall": {"method": method, "slip": "free"}}));

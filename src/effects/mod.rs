@@ -19,6 +19,7 @@ mod riemann;
 mod shear_rate;
 mod stage;
 mod tensile_control;
+mod transport;
 mod turbulence;
 mod variable_viscosity;
 mod whole_array;
@@ -34,13 +35,14 @@ pub use dissipation::{Diffusion, Dissipation, Laminar, POWERS, WALL_POWER};
 pub use herschel_bulkley::{HerschelBulkley, HerschelBulkleyConfig};
 pub use laminar_viscosity::{LAMINAR_VISCOSITY, MonaghanGingold, Morris, fastest_decay};
 pub use particle_shifting::{
-    PARTICLE_SHIFTING, Shift, Surroundings, lattice_concentration, sun_strength,
+    Shift, Surroundings, lattice_concentration, particle_shifting, sun_strength,
 };
 pub use pressure::{PRESSURE, Pressure};
 pub use riemann::{RIEMANN_VISCOSITY, RiemannDiffusion, RiemannViscosity, fastest_diffusion};
 pub use shear_rate::ShearRate;
 pub use stage::{Around, Stage};
 pub use tensile_control::{TENSILE_CONTROL, TensileControl, TensileStage};
+pub use transport::{Carry, Transport};
 pub use turbulence::{Smagorinsky, TurbulenceConfig};
 pub use variable_viscosity::{Rheology, VariableViscosity};
 pub use whole_array::{ACOUSTIC_DAMPER, GRAVITY};

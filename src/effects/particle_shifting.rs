@@ -73,6 +73,8 @@ pub struct Shift {
     limit: f64,
     /// `1 / W(Δp)`.
     inverse_weight: f64,
+    /// Strength of the term against pairing.
+    pairing: f64,
     free_surface: bool,
     /// Rate in 1/s at which density follows the concentration.
     following: f64,
@@ -101,9 +103,35 @@ impl Shift {
         }
     }
 
+    /// What the background pressure `ρ c0²` of the transport-velocity formulation moves particles by in a step:
+    /// `-(c0 Δt)² Σ V_j ∇W_ij` (Adami, Hu & Adams 2013, for volumes that are equal); limited to `0.2 h`. For fluid without a
+    /// free surface, which it would drive apart.
+    pub fn transport_velocity<const D: usize>(
+        around: &Surroundings,
+        speed: f64,
+        sound_speed: f64,
+        dt: f64,
+    ) -> Self {
+        Shift {
+            strength: (sound_speed * dt).powi(2),
+            limit: 0.2 * around.h,
+            pairing: 0.0,
+            ..Self::none::<D>(around, speed)
+        }
+    }
+
     /// Whether there is a free surface, which shifts must keep.
     pub fn keeps_a_surface(&self) -> bool {
         self.free_surface
+    }
+
+    /// Rate in 1/s at which density follows the concentration where pairs tell it; 0 with a free surface.
+    pub fn following_inside(&self) -> f64 {
+        if self.free_surface {
+            0.0
+        } else {
+            self.following
+        }
     }
 
     fn none<const D: usize>(around: &Surroundings, speed: f64) -> Self {
@@ -112,6 +140,7 @@ impl Shift {
             strength_per_speed: 0.0,
             limit: 0.0,
             inverse_weight: 1.0 / around.kernel.value(D, around.spacing, around.h),
+            pairing: PAIRING,
             free_surface: around.free_surface,
             following: speed / around.h
                 * if around.free_surface {
@@ -208,7 +237,7 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
         let pairing = ratio
             .squared()
             .squared()
-            .mul_add(L::constant(PAIRING), L::constant(1.0));
+            .mul_add(L::constant(self.pairing), L::constant(1.0));
         tally.push(pair.slope);
         tally.repel(pair.slope * pairing, pair);
         if self.free_surface {
@@ -220,12 +249,26 @@ impl<R: Real, const D: usize> PairTerm<R, D> for Shift {
     }
 }
 
-/// What the effect is.
-pub const PARTICLE_SHIFTING: Declaration = Declaration {
-    name: "particle shifting",
-    columns: &[Quantity::Vector("shift")],
-    sweeps: 0,
-    limit: None,
-    dissipates: "",
-    source: "Sun, Colagrossi, Marrone, Antuono & Zhang 2017; Lind, Xu, Stansby & Rogers 2012",
-};
+/// What the effect is; with `transport`, particles take the fields along that they find.
+pub fn particle_shifting(transport: bool) -> Declaration {
+    Declaration {
+        name: "particle shifting",
+        columns: if transport {
+            &[
+                Quantity::Vector("shift"),
+                Quantity::Vector("change of velocity"),
+                Quantity::Scalar("change of density"),
+            ]
+        } else {
+            &[Quantity::Vector("shift")]
+        },
+        sweeps: usize::from(transport),
+        limit: None,
+        dissipates: "",
+        source: if transport {
+            "Sun, Colagrossi, Marrone, Antuono & Zhang 2019; Adami, Hu & Adams 2013"
+        } else {
+            "Sun, Colagrossi, Marrone, Antuono & Zhang 2017; Lind, Xu, Stansby & Rogers 2012"
+        },
+    }
+}

@@ -1,24 +1,23 @@
-//! From a configuration to the passes of a step: which pair terms the two sweeps fuse (`catalogue.rs` has the list of all
-//! effects, and those with stages of their own).
+//! From a configuration to the passes of a step: which pair terms the sweep of forces fuses (`density_rates.rs`: that of
+//! continuity; `catalogue.rs` has the list of all effects, and those with stages of their own).
 
 use super::config::{Config, DiffusionForm, EosName, ShiftingForm, ViscosityForm};
 use super::solver::{Body, Solver};
 use super::timers::Phase;
 use crate::effects::{
-    Antuono, ArtificialViscosity, Contact, DensityGradient, Fourtakas, Molteni, MonaghanGingold,
-    Morris, PairTerm, RiemannDiffusion, Shift, Surroundings, fastest_decay, fastest_diffusion,
-    lattice_concentration,
+    ArtificialViscosity, Contact, DensityGradient, MonaghanGingold, Morris, PairTerm, Surroundings,
+    fastest_decay, fastest_diffusion, lattice_concentration,
 };
-use crate::eos::{AnyEos, EquationOfState, Linear, Tait};
+use crate::eos::{AnyEos, Linear, Tait};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
 use crate::particles::{Column, OptionalColumns, Wall};
 use crate::prescribed::RigidMotion;
 use crate::simd::Real;
-use crate::step::{DensityRate, Forces, ShiftTerm, WallDensityRate};
+use crate::step::Forces;
 use crate::sweep::{Output, Pairs, Pass, Source, SumColumns, Sweep, Sweeper, slot};
-use crate::walls::{Extrapolation, Slip, WallMethod};
+use crate::walls::{Slip, WallMethod};
 
 /// Components of a symmetric matrix.
 pub(super) const fn matrix<const D: usize>() -> usize {
@@ -43,7 +42,8 @@ pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColum
     }
 }
 
-fn slices<R: Real>(columns: &mut [Column<R>]) -> impl Iterator<Item = &mut [R]> {
+/// Columns as a sweep takes them.
+pub(super) fn slices<R: Real>(columns: &mut [Column<R>]) -> impl Iterator<Item = &mut [R]> {
     columns.iter_mut().map(|c| &mut c[..])
 }
 
@@ -142,7 +142,7 @@ pub(super) fn outputs<'a, R: Real>(
 }
 
 /// The walls, if the fluid feels their particles.
-fn felt<'a, R: Real, const D: usize>(
+pub(super) fn felt<'a, R: Real, const D: usize>(
     config: &Config,
     wall: &'a Option<Wall<R, D>>,
 ) -> Option<&'a Wall<R, D>> {
@@ -188,59 +188,6 @@ pub(super) fn force_source<'a, R: Real, const D: usize>(
 }
 
 impl<R: Real, const D: usize> Solver<R, D> {
-    /// Wall values from the fluid as it is before the sweep of forces.
-    pub(super) fn update_walls(&mut self) {
-        let (Some(wall), Some(config)) = (&mut self.wall, self.config.wall) else {
-            return;
-        };
-        match config.method {
-            WallMethod::Adami => {
-                let fluid = &self.fluid;
-                let source = force_source(
-                    &fluid.position,
-                    &fluid.cells,
-                    &fluid.volume,
-                    &fluid.pressure,
-                    &fluid.condensation,
-                    &fluid.pair_velocity,
-                );
-                let mut target = Source::new(&wall.position, &wall.cells)
-                    .with(slot::VOLUME, &wall.mass)
-                    .with_vector(slot::VELOCITY, &wall.pair_velocity);
-                if let Some(moving) = &wall.moving {
-                    target = target.with_vector(slot::GRADIENT, &moving.acceleration);
-                }
-                let pass = Extrapolation {
-                    gravity: self.motion.gravity,
-                    eos: self.motion.eos,
-                    at_rest: self.motion.eos.condensation(0.0),
-                    suction: config.suction.unwrap_or(self.grid.is_periodic()),
-                    no_slip: config.slip == Slip::No,
-                    accelerated: wall.moving.is_some(),
-                };
-                let columns = [&mut wall.pressure, &mut wall.condensation, &mut wall.volume];
-                let slip = wall
-                    .slip_velocity
-                    .iter_mut()
-                    .flatten()
-                    .enumerate()
-                    .map(|(a, c)| (3 + a, c));
-                let out = outputs(columns.into_iter().enumerate().chain(slip));
-                let stage = Stage {
-                    grid: &self.grid,
-                    sweeper: &self.sweeper,
-                    target: &target,
-                    source: &source,
-                };
-                stage.run(self.kernel, &pass, out);
-            }
-            WallMethod::Dynamic => wall.follow_density(&self.motion.eos),
-            WallMethod::ModifiedDynamic => self.extrapolate_from_ghosts(),
-            WallMethod::SemiAnalytical | WallMethod::Penalty => {}
-        }
-        self.timers.book(Phase::Walls);
-    }
-
     /// The sweep of forces.
     pub(super) fn sum_forces(&mut self) {
         let c = &self.config;
@@ -333,109 +280,5 @@ impl<R: Real, const D: usize> Solver<R, D> {
             pass: &pass,
         };
         [self.budget.walls, ..] = self.sweeper.run_pairs(self.kernel, &pairs, &columns);
-    }
-
-    /// The sweep of continuity, and of the shift over the step `dt`.
-    pub(super) fn sum_density_rates(&mut self, dt: f64) {
-        let c = &self.config;
-        let (h, c0) = (c.smoothing_length, c.sound_speed);
-        match c.density_diffusion.map(|d| (d.form, d.delta)) {
-            None => self.rates_with((), dt),
-            Some((DiffusionForm::Molteni, delta)) => {
-                self.rates_with(Molteni::new(delta, h, c0), dt)
-            }
-            Some((DiffusionForm::Antuono, delta)) => {
-                self.rates_with(Antuono::new(delta, h, c0), dt)
-            }
-            Some((DiffusionForm::Riemann, delta)) => {
-                self.rates_with(RiemannDiffusion::new(delta, c0), dt)
-            }
-            Some((DiffusionForm::Fourtakas, delta)) => {
-                self.rates_with(
-                    Fourtakas::<D>::new(delta, h, c0, c.gamma, self.motion.gravity),
-                    dt,
-                );
-            }
-        }
-        self.timers.book(Phase::Continuity);
-        self.audited(None, Self::add_facet_rates);
-    }
-
-    fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
-        match self.shift_over(dt) {
-            None => self.run_density_rates(diffusion, ()),
-            Some(shift) => self.run_density_rates(diffusion, shift),
-        }
-    }
-
-    /// Shifting over the step `dt`, if there is any.
-    pub(super) fn shift_over(&self, dt: f64) -> Option<Shift> {
-        let speed = self.state.speed;
-        self.shifting.map(|(form, around)| match form {
-            ShiftingForm::Sun => Shift::sun::<D>(&around, speed, dt),
-            ShiftingForm::Lind => Shift::lind::<D>(&around, speed, dt),
-        })
-    }
-
-    fn run_density_rates<T: PairTerm<R, D>, S: ShiftTerm<R, D>>(&mut self, diffusion: T, shift: S) {
-        let reference_density = self.config.reference_density;
-        let pass = DensityRate {
-            diffusion,
-            shift,
-            reference_density,
-        };
-        let fluid = &mut self.fluid;
-        let mut source = Source::new(&fluid.position, &fluid.cells)
-            .with(slot::VOLUME, &fluid.volume)
-            .with(slot::CONDENSATION, &fluid.condensation)
-            .with_vector(slot::VELOCITY, &fluid.pair_velocity);
-        if let Some(gradient) = &fluid.gradient {
-            source = source.with_vector(slot::GRADIENT, gradient);
-        }
-        let wall = felt(&self.config, &self.wall).map(|w| {
-            Source::new(&w.position, &w.cells)
-                .with(slot::VOLUME, &w.volume)
-                .with(slot::CONDENSATION, &w.condensation)
-                .with_vector(slot::VELOCITY, &w.pair_velocity)
-        });
-        let mut columns = SumColumns::default().scalar(&mut fluid.density_rate);
-        if let Some(shift) = &mut fluid.shift {
-            columns = columns.gradient(slices(shift));
-        }
-        if fluid.sums.len() > matrix::<D>() {
-            let (moment, vector) = fluid.sums.split_at_mut(matrix::<D>());
-            columns = columns.moment(slices(moment)).vector(slices(vector));
-        }
-        let pairs = Pairs {
-            grid: &self.grid,
-            fluid: &source,
-            wall: wall.as_ref(),
-            pass: &pass,
-        };
-        self.sweeper.run_pairs(self.kernel, &pairs, &columns);
-        // Walls that follow the equation of continuity: the same sum, over the fluid.
-        if let Some(w) = &mut self.wall
-            && let Some((_, rate)) = &mut w.density
-        {
-            let target = Source::new(&w.position, &w.cells)
-                .with(slot::VOLUME, &w.volume)
-                .with(slot::CONDENSATION, &w.condensation)
-                .with_vector(slot::VELOCITY, &w.pair_velocity);
-            let pass = WallDensityRate { reference_density };
-            let stage = Stage {
-                grid: &self.grid,
-                sweeper: &self.sweeper,
-                target: &target,
-                source: &source,
-            };
-            stage.run(self.kernel, &pass, outputs([(0, rate)]));
-        }
-    }
-
-    /// Density of walls that follow the equation of continuity.
-    pub(super) fn advance_walls(&mut self, dt: f64) {
-        if let Some(wall) = &mut self.wall {
-            wall.advance_density(dt, self.config.reference_density);
-        }
     }
 }

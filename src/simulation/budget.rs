@@ -279,7 +279,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         self.sweeper.total(self.kernel, &pairs)
     }
 
-    /// Potential energy that the shift over `dt` has taken, per time, in W.
+    /// Energy that the shift over `dt` has taken, per time, in W: potential energy, and what particles took along.
     fn power_of_shift(&self, dt: f64) -> f64 {
         let Some(shift) = self.fluid.shift.as_ref().filter(|_| dt > 0.0) else {
             return 0.0;
@@ -289,6 +289,6 @@ impl<R: Real, const D: usize> Solver<R, D> {
             let along: f64 = (0..D).map(|a| gravity[a] * shift[a][i].to_f64()).sum();
             [mass[i].to_f64() * along]
         });
-        taken / dt
+        (taken - self.energy_transported()) / dt
     }
 }

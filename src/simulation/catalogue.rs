@@ -5,9 +5,10 @@ use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
     ACOUSTIC_DAMPER, ARTIFICIAL_STRESS, ARTIFICIAL_VISCOSITY, Added, Around, ArtificialStress,
-    CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, PARTICLE_SHIFTING, PRESSURE,
-    PairTerm, RIEMANN_VISCOSITY, Rheology, RiemannViscosity, Smagorinsky, Stage, TENSILE_CONTROL,
+    CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, PRESSURE, PairTerm,
+    RIEMANN_VISCOSITY, Rheology, RiemannViscosity, Smagorinsky, Stage, TENSILE_CONTROL,
     TensileControl, TensileStage, VariableViscosity, density_diffusion, fastest_decay,
+    particle_shifting,
 };
 use crate::simd::Real;
 use crate::step::Limit;
@@ -104,7 +105,10 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
             c.density_diffusion.is_some(),
         ),
         (ACOUSTIC_DAMPER, c.acoustic_damper.is_some()),
-        (PARTICLE_SHIFTING, c.shifting.is_some()),
+        (
+            particle_shifting(c.shifting.is_some_and(|s| s.form.transport().is_some())),
+            c.shifting.is_some(),
+        ),
         (RIEMANN_VISCOSITY, c.riemann_viscosity),
         (TENSILE_CONTROL, remedy(TensileForm::Sun)),
         (ARTIFICIAL_STRESS, remedy(TensileForm::Monaghan)),

@@ -1,6 +1,6 @@
 //! What a simulation is told, all numbers resolved.
 
-use crate::effects::{HerschelBulkleyConfig, TurbulenceConfig};
+use crate::effects::{HerschelBulkleyConfig, Transport, TurbulenceConfig};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::prescribed::{MotionConfig, SignalConfig};
@@ -217,6 +217,21 @@ pub enum ShiftingForm {
     Sun,
     /// Lind et al. 2012.
     Lind,
+    /// As `Sun`, and the particles take the fields along: Sun et al. 2019.
+    Consistent,
+    /// Transport velocity, Adami, Hu & Adams 2013: not with a free surface.
+    TransportVelocity,
+}
+
+impl ShiftingForm {
+    /// How the fields follow the shift, if they do.
+    pub fn transport(self) -> Option<Transport> {
+        match self {
+            ShiftingForm::Sun | ShiftingForm::Lind => None,
+            ShiftingForm::Consistent => Some(Transport::Differences),
+            ShiftingForm::TransportVelocity => Some(Transport::Stress),
+        }
+    }
 }
 
 /// Walls.
@@ -288,6 +303,16 @@ impl Config {
         }
         if let Some(a) = self.acoustic_damper {
             not_negative("acoustic_damper", a)?;
+        }
+        if let Some(s) = self.shifting
+            && s.form == ShiftingForm::TransportVelocity
+            && s.free_surface
+        {
+            return Err(Error::Input(
+                "shifting.form: found transport-velocity with a free surface, which its background pressure would drive \
+                 apart; allowed there are sun, consistent and lind"
+                    .to_owned(),
+            ));
         }
         if let Some(wall) = self.wall.filter(|w| !w.method.uses_particles())
             && self.tensile_control.is_some()

@@ -6,7 +6,7 @@ use super::diagnostics::Diagnostics;
 use super::retry::Retries;
 use super::sample::Sample;
 use super::solver::{Body, Progress, Solver};
-use super::surfaces::{SurfaceInput, check_surfaces, facets};
+use super::surfaces::{SurfaceInput, check_mirrors, check_surfaces, facets};
 use crate::error::{Error, Result};
 use crate::particles::Given;
 use crate::prescribed::Pose;
@@ -266,6 +266,7 @@ impl Simulation {
             macro_rules! solver {
                 ($real:ty, $dimension:literal) => {{
                     let facets = facets(&table, surfaces);
+                    check_mirrors::<$dimension>(&config, &table, &facets)?;
                     let solver =
                         Solver::<$real, $dimension>::new(config, table, &fluid, &wall, threads)?;
                     Box::new(solver.with_surface(facets))

@@ -1,10 +1,15 @@
 //! Walls without particles: what their facets do to the fluid, and the fluid to them.
 
 use super::boundary::Boundary;
+use super::config::ViscosityForm;
 use super::solver::Solver;
 use super::timers::Phase;
+use crate::effects::{MonaghanGingold, Morris};
 use crate::simd::Real;
-use crate::walls::{Facet, Penalty, SemiAnalytical, Slip, Surface, WallFactor, WallMethod};
+use crate::sweep::Single;
+use crate::walls::{
+    Facet, Mirror, MirroredForces, Penalty, SemiAnalytical, Slip, Surface, WallFactor, WallMethod,
+};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -19,6 +24,8 @@ pub(super) enum FacetWalls<const D: usize> {
     Penalty(Penalty<D>, Surface<D>),
     /// What the wall cuts off the support; contact for what comes too near.
     SemiAnalytical(SemiAnalytical<D>, Penalty<D>),
+    /// Images of the fluid; contact for what comes too near.
+    Mirror(Mirror<D>, Penalty<D>),
 }
 
 impl<const D: usize> FacetWalls<D> {
@@ -29,6 +36,7 @@ impl<const D: usize> FacetWalls<D> {
             FacetWalls::SemiAnalytical(walls, contact) => {
                 walls.surface.bytes() + contact.surface.bytes()
             }
+            FacetWalls::Mirror(walls, contact) => walls.bytes() + contact.surface.bytes(),
         }
     }
 }
@@ -56,6 +64,13 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     velocity: self.wall_velocities(),
                 };
                 Some(FacetWalls::SemiAnalytical(walls, contact(CORE)))
+            }
+            WallMethod::Mirror => {
+                let support = c.smoothing_length * self.kernel.support();
+                let facets = facets.to_vec();
+                let velocity = self.wall_velocities();
+                let walls = Mirror::new(facets, velocity, &self.grid, support, c.spacing);
+                Some(FacetWalls::Mirror(walls, contact(CORE)))
             }
             _ => None,
         }
@@ -96,6 +111,33 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 );
                 contact.add_forces(&mut self.fluid, &self.grid);
             }
+            FacetWalls::Mirror(walls, contact) => {
+                let (h, rho) = (c.smoothing_length, c.reference_density);
+                let sticks = c.wall.is_some_and(|w| w.slip == Slip::No);
+                let (fluid, grid, motion) = (&mut self.fluid, &self.grid, &self.motion);
+                let suction = c.wall.and_then(|w| w.suction);
+                let by = MirroredForces {
+                    single: &Single::new(self.kernel, h),
+                    reference_density: rho,
+                    gravity: motion.gravity,
+                    suction: suction.unwrap_or(grid.is_periodic()),
+                    friction: (),
+                };
+                match c.laminar_viscosity.filter(|_| sticks) {
+                    None => walls.add_forces(fluid, grid, &by),
+                    // As in the sweep of forces: beside artificial viscosity there is one form.
+                    Some(v)
+                        if v.form == ViscosityForm::Morris && c.artificial_viscosity.is_none() =>
+                    {
+                        walls.add_forces(fluid, grid, &by.with(Morris::new(v.kinematic, h, rho)));
+                    }
+                    Some(v) => {
+                        let friction = MonaghanGingold::new(v.kinematic, h, rho);
+                        walls.add_forces(fluid, grid, &by.with(friction));
+                    }
+                }
+                contact.add_forces(fluid, grid);
+            }
         }
         self.timers.book(Phase::Walls);
     }
@@ -108,10 +150,17 @@ impl<R: Real, const D: usize> Solver<R, D> {
         else {
             return;
         };
+        let c = &self.config;
+        let following = self.shift_over(0.0).map_or(0.0, |s| s.following_inside());
         let (fluid, grid) = (&mut self.fluid, &self.grid);
         let far = match walls {
             FacetWalls::SemiAnalytical(walls, _) => {
-                walls.add_rates(fluid, grid, self.config.reference_density);
+                walls.add_rates(fluid, grid, c.reference_density);
+                &walls.surface
+            }
+            FacetWalls::Mirror(walls, _) => {
+                let kernel = (self.kernel, c.smoothing_length);
+                walls.add_rates(fluid, grid, kernel, c.reference_density, following);
                 &walls.surface
             }
             FacetWalls::Penalty(_, far) => far,

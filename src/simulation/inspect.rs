@@ -82,6 +82,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if stages > 0 {
             groups.push(("stages", stages));
         }
+        if let Some(transport) = &self.transport {
+            groups.push(("shift transport", transport.bytes()));
+        }
         groups.push(("buffers", self.sweeper.bytes()));
         groups.push(("guard", self.guard.bytes()));
         groups

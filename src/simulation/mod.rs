@@ -7,6 +7,7 @@ mod catalogue;
 mod checkpoint;
 mod config;
 mod crowding;
+mod density_rates;
 mod diagnosis;
 mod diagnostics;
 mod engine;
@@ -23,6 +24,8 @@ mod snapshot;
 mod solver;
 mod surfaces;
 mod timers;
+mod transport;
+mod wall_values;
 
 pub use checkpoint::{Entries, Entry};
 pub use config::{

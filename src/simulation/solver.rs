@@ -7,6 +7,7 @@ use super::gravity::Gravity;
 use super::guard::Guard;
 use super::retry::Trouble;
 use super::timers::{Phase, Timers};
+use super::transport::Changes;
 use crate::effects::{Stage, Surroundings};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
@@ -52,6 +53,8 @@ pub struct Solver<R, const D: usize> {
     pub(super) limits: Limits,
     pub(super) kernel: KernelName,
     pub(super) shifting: Option<(ShiftingForm, Surroundings)>,
+    /// What shifts change, in forms that ask for it.
+    pub(super) transport: Option<Changes<R, D>>,
     pub(super) time: f64,
     pub(super) step: u64,
     pub(super) time_step: f64,
@@ -149,6 +152,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             },
             kernel: config.kernel,
             shifting: super::assembly::shifting::<D>(&config),
+            transport: Changes::new(&config, fluid.mass.len()),
             fluid: Fluid::new(
                 fluid,
                 &grid,
@@ -270,12 +274,15 @@ impl<R: Real, const D: usize> Solver<R, D> {
             Integrator::RungeKutta2 => runge_kutta_2(self, dt)?,
             Integrator::RungeKutta4 => runge_kutta_4(self, dt)?,
         }
+        self.sum_transport();
+        let free = self.is_free();
         if let Some(shift) = &self.fluid.shift {
-            let longest = if self.wall.is_none() && !self.grid.is_periodic() {
+            let longest = if free {
                 apply_shift_of_free_fluid(&mut self.fluid)
             } else {
                 apply_shift(&mut self.fluid.position, shift)
             };
+            self.apply_transport();
             self.state.finite &= longest.is_finite();
             self.travelled += longest;
             self.timers.book(Phase::Shift);

@@ -3,7 +3,7 @@
 use super::config::Config;
 use super::solver::Body;
 use crate::error::{Error, Result};
-use crate::walls::{Facet, Slip, WallMethod};
+use crate::walls::{Facet, Slip, WallMethod, check_planes};
 
 /// The surface of a wall.
 #[derive(Clone, Debug)]
@@ -66,6 +66,26 @@ pub(super) fn check_surfaces(
         )));
     }
     Ok(())
+}
+
+/// Checks that walls which mirror are made of planes that can.
+pub(super) fn check_mirrors<const D: usize>(
+    config: &Config,
+    bodies: &[Body],
+    facets: &[Facet<D>],
+) -> Result<()> {
+    if config.wall.is_none_or(|w| w.method != WallMethod::Mirror) {
+        return Ok(());
+    }
+    let support = config.smoothing_length * config.kernel.support();
+    check_planes(facets, support, config.spacing).map_err(|(wall, why)| {
+        let body = bodies.iter().filter(|b| !b.fluid).nth(wall as usize);
+        Error::Input(format!(
+            "wall.method: found \"mirror\", but wall {:?} {why}; allowed are planes at right angles, plates and gaps no \
+             thinner than the support: use adami or modified-dynamic walls",
+            body.map_or("", |b| &b.name)
+        ))
+    })
 }
 
 /// The facets of all surfaces.

@@ -4,11 +4,13 @@ mod integrator;
 mod motion;
 mod passes;
 mod predictor_corrector;
+mod projection;
 mod runge_kutta_2;
 mod runge_kutta_4;
 mod shift;
 mod stages;
 mod time_step;
+mod transport;
 
 pub use integrator::{Integrator, System};
 pub use motion::{Motion, State};
@@ -19,3 +21,4 @@ pub use runge_kutta_4::runge_kutta_4;
 pub use shift::{apply_shift, apply_shift_of_free_fluid};
 pub use stages::Stage;
 pub use time_step::{Limit, Limits};
+pub use transport::take_along;

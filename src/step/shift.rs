@@ -1,15 +1,9 @@
 //! Moving particles by their shift.
 
+use super::projection::{coefficients, freed, rigid_motions};
 use crate::particles::{Column, Fluid, Shared, for_ranges, sum};
 use crate::simd::Real;
-use nalgebra::{Cholesky, SMatrix, SVector};
 use std::ops::Range;
-
-/// Added to the diagonal of the projection's matrix, over its trace: where all move alike, no rotation is seen and the
-/// matrix is singular.
-const RIDGE: f64 = 1e-12;
-/// Solutions of the projection: each takes away what ridge and round-off left of the last.
-const SOLUTIONS: usize = 3;
 
 /// Adds `shift` to `position`; gives the length of the longest one in m, not a number if one is not finite.
 pub fn apply_shift<R: Real, const D: usize>(
@@ -55,64 +49,19 @@ fn project<R: Real, const D: usize, const K: usize>(fluid: &mut Fluid<R, D>) -> 
     });
     let scale = (speed2[0] / totals[3]).sqrt();
     let inverse_scale = if scale > 0.0 { 1.0 / scale } else { 0.0 };
-    // The fields that the projection adds: translations, and rotations of the relative velocity.
+    // What the projection adds: translations, and rotations of the relative velocity.
     let fields = |i: usize| -> [[f64; D]; K] {
         let v: [f64; D] = std::array::from_fn(|a| (velocity[a][i] - mean[a]) * inverse_scale);
-        std::array::from_fn(|k| {
-            if k < D {
-                std::array::from_fn(|a| f64::from(u8::from(a == k)))
-            } else if D == 2 {
-                std::array::from_fn(|a| if a == 0 { -v[1] } else { v[0] })
-            } else {
-                let e = k - D;
-                std::array::from_fn(|a| match (a + 3 - e) % 3 {
-                    0 => 0.0,
-                    1 => -v[(e + 2) % 3],
-                    _ => v[(e + 1) % 3],
-                })
-            }
-        })
+        rigid_motions(&v)
     };
     let of = |i: usize| -> [f64; D] { std::array::from_fn(|a| shift[a][i].to_f64()) };
-    let length = |s: &[f64; D]| s.iter().map(|s| s * s).sum::<f64>().sqrt();
-    let moved = |i: usize, c: &SVector<f64, K>| -> [f64; D] {
-        let s = of(i);
-        let weight = length(&s);
-        if weight == 0.0 {
-            return s;
-        }
-        let fields = fields(i);
-        std::array::from_fn(|a| s[a] + weight * (0..K).map(|k| c[k] * fields[k][a]).sum::<f64>())
-    };
-    let mut matrix = SMatrix::<f64, K, K>::zeros();
-    for p in 0..K {
-        let row: [f64; K] = sum(n, |i| {
-            let fields = fields(i);
-            let weight = mass[i].to_f64() * length(&of(i));
-            std::array::from_fn(|q| {
-                weight * (0..D).map(|a| fields[p][a] * fields[q][a]).sum::<f64>()
-            })
-        });
-        for q in 0..K {
-            matrix[(p, q)] = row[q];
-        }
-    }
-    let ridge = RIDGE * matrix.trace();
-    let factors = Cholesky::new(matrix + SMatrix::identity() * ridge);
-    let mut coefficients = SVector::<f64, K>::zeros();
-    if let Some(factors) = factors {
-        for _ in 0..SOLUTIONS {
-            let excess: [f64; K] = sum(n, |i| {
-                let (s, fields, m) = (moved(i, &coefficients), fields(i), mass[i].to_f64());
-                std::array::from_fn(|k| m * (0..D).map(|a| s[a] * fields[k][a]).sum::<f64>())
-            });
-            coefficients -= factors.solve(&SVector::from(excess));
-        }
-    }
+    let coefficients = coefficients(n, |i| mass[i].to_f64(), of, fields);
     // Written into the columns of positions, which none of the above reads.
     let mut position: [Shared<f64>; D] =
         std::array::from_fn(|a| Shared::new(&mut fluid.position[a]));
-    shifted(n, &mut position, |i| moved(i, &coefficients))
+    shifted(n, &mut position, |i| {
+        freed(of(i), || fields(i), &coefficients)
+    })
 }
 
 fn move_by<const D: usize>(

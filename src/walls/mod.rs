@@ -4,8 +4,10 @@ mod adami;
 mod dynamic;
 mod facet;
 mod leaks;
+mod mirror;
 mod modified_dynamic;
 mod penalty;
+mod planes;
 mod semi_analytical;
 mod shift;
 mod surface;
@@ -14,8 +16,10 @@ mod wall_factor;
 pub use adami::Extrapolation;
 pub use facet::Facet;
 pub use leaks::DEPTH;
+pub use mirror::{Mirror, MirroredForces};
 pub use modified_dynamic::{Ghosts, NodeValues, NodeWeights};
 pub use penalty::Penalty;
+pub use planes::check_planes;
 pub use semi_analytical::SemiAnalytical;
 pub use surface::{Foot, Surface};
 pub use wall_factor::{Share, WallFactor};
@@ -39,6 +43,8 @@ pub enum WallMethod {
     SemiAnalytical,
     /// Contact with facets (Hallquist 2006).
     Penalty,
+    /// Images of the fluid behind planes (Libersky et al. 1993; Colagrossi & Landrini 2003).
+    Mirror,
 }
 
 impl WallMethod {
@@ -49,7 +55,10 @@ impl WallMethod {
 
     /// Whether the fluid feels the particles of walls; else it feels their facets.
     pub fn uses_particles(self) -> bool {
-        !matches!(self, WallMethod::SemiAnalytical | WallMethod::Penalty)
+        !matches!(
+            self,
+            WallMethod::SemiAnalytical | WallMethod::Penalty | WallMethod::Mirror
+        )
     }
 }
 

@@ -157,6 +157,10 @@ def test_a_scheme_brings_its_diffusion():
         vortex(numerics={"scheme": "riemann"}).replace({"fluid.fluid.viscosity.artificial": 0.1})
     with pytest.raises(kolk.SceneError, match="walls of particles"):
         tank(numerics={"tensile_control": "sun", "wall": "penalty"})
+    with pytest.raises(kolk.SceneError, match=r"transport-velocity.*free surface"):
+        tank(numerics={"shifting": "transport-velocity"})
+    config = json.loads(vortex(numerics={"shifting": "transport-velocity"}).engine_config())
+    assert config["shifting"] == {"form": "transport-velocity", "free_surface": False}
 
 
 def test_every_case_can_say_what_was_chosen():

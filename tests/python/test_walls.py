@@ -214,7 +214,7 @@ def test_nothing_is_lost_behind_a_wall(wall: str) -> None:
 def test_still_water_stays_still_at_every_wall() -> None:
     still = kolk.load("still-water").replace({"spacing": 0.5 / 15})
     energies, errors = {}, {}
-    for wall in ("adami", "dynamic", "modified-dynamic", "semi-analytical"):
+    for wall in ("adami", "dynamic", "modified-dynamic", "semi-analytical", "mirror"):
         sim = kolk.Simulation(still.replace({"numerics.wall": wall}), threads=1)
         sim.advance_to(5 * math.sqrt(0.5 / 9.81))
         water = sim.bodies["water"]
@@ -225,7 +225,7 @@ def test_still_water_stays_still_at_every_wall() -> None:
         force = sim.force("tank")["force"]
         # On facets it is the sum of pressures there, not the reaction to forces between particles;
         # dynamic walls are noisy.
-        rel = {"semi-analytical": 0.02, "dynamic": 0.01}.get(wall, 1e-3)
+        rel = {"semi-analytical": 0.02, "mirror": 0.02, "dynamic": 0.01}.get(wall, 1e-3)
         assert force[1] == pytest.approx(-water.mass.sum() * 9.81, rel=rel)
     assert max(errors.values()) < 0.012
     # On facets the noise is the largest: there are no wall particles among those that the
@@ -233,6 +233,55 @@ def test_still_water_stays_still_at_every_wall() -> None:
     noisy = energies.pop("semi-analytical")
     assert noisy < 5e-6
     assert max(energies.values()) < 2e-6
+
+
+@pytest.mark.parametrize("dimension", [2, 3])
+def test_mirrors_hold_a_splash_against_a_block(dimension: int) -> None:
+    # Water falls on a block in a tank: inner and outer edges, and corners where planes meet.
+    spacing, until = (0.02, 0.6) if dimension == 2 else (0.04, 0.12)
+    wide = [0.6] if dimension == 2 else [0.6, 0.32]
+    block = {"box": {"from": [0.3, *[0.0] * (dimension - 1)], "to": [0.46, *wide[1:], 0.16]}}
+    whole = scene(
+        {
+            "name": "tank",
+            "shape": {"tank": {"from": [0.0] * dimension, "to": [*wide, 0.8], "open": ["top"]}},
+        },
+        {"name": "block", "shape": block},
+        fluid=[
+            {
+                "name": "water",
+                "shape": {"box": {"from": [0.0] * dimension, "to": [0.28, *wide[1:], 0.4]}},
+                "viscosity": {"artificial": 0.05},
+            }
+        ],
+        dimension=dimension,
+        spacing=spacing,
+        until=until,
+        numerics={"wall": "mirror"},
+    )
+    sim = kolk.Simulation(whole, threads=1)
+    sim.advance_to(until)
+    water = sim.bodies["water"]
+    assert sim.leaks == 0
+    solid = sim.scene.wall[1].shape
+    assert solid is not None
+    assert solid.shape.distance(water.position).min() > -0.1 * spacing
+    # The water has come to the block, and in 2D over it.
+    assert water.position[:, 0].max() > (0.46 if dimension == 2 else 0.29)
+
+
+def test_mirrors_refuse_what_they_cannot_do() -> None:
+    with pytest.raises(kolk.SceneError, match=r"right angle.*adami"):
+        falling("mirror")
+    disc = {"disc": {"centre": [0.6, 0.3], "radius": 0.1}}
+    for shape, why in (
+        (disc, "curved"),
+        ({"box": {"from": [0.5, 0.1], "to": [0.52, 0.4]}}, "plate"),
+        ({"box": {"from": [0.96, 0.1], "to": [0.98, 0.4]}}, "gap|plate"),
+    ):
+        whole = scene(tank(), {"name": "thing", "shape": shape}, numerics={"wall": "mirror"})
+        with pytest.raises(kolk.SceneError, match=why):
+            kolk.Simulation(whole, threads=1)
 
 
 def test_walls_of_facets_refuse_what_they_cannot_do() -> None:

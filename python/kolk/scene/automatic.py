@@ -136,7 +136,7 @@ def tensile_control(scene: Scene) -> Choice:
     return Choice(key, "none", True, reason)
 
 
-FACETS = ("semi-analytical", "penalty")
+FACETS = ("semi-analytical", "penalty", "mirror")
 """Methods of walls that have no particles."""
 
 

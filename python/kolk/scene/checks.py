@@ -9,6 +9,7 @@ import numpy as np
 
 from kolk.errors import Problem, SceneError
 
+from .automatic import FACETS
 from .base import nearest, shown
 from .expression import Expression
 from .model import Scene
@@ -193,8 +194,14 @@ def _numerics(scene: Scene) -> Iterator[Problem]:
                 f'found {shown(fluid.viscosity.artificial)}, but the scheme "riemann" has a '
                 'dissipation of its own: leave it out, or use scheme = "delta-sph"',
             )
+    if scene.numerics.shifting == "transport-velocity" and scene.free_surface:
+        yield Problem(
+            ("numerics", "shifting"),
+            'found "transport-velocity", whose background pressure drives fluid with a free '
+            'surface apart: use "sun", "consistent" or "lind"',
+        )
     remedy, method = scene.numerics.tensile_control, scene.numerics.wall
-    if remedy not in ("auto", "none") and method in ("semi-analytical", "penalty") and scene.wall:
+    if remedy not in ("auto", "none") and method in FACETS and scene.wall:
         yield Problem(
             ("numerics", "tensile_control"),
             f'found "{remedy}", which needs walls of particles, but the walls are "{method}": use '

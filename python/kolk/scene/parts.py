@@ -335,8 +335,10 @@ class Numerics(Model):
     delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
         default=0.1, description="of the density diffusion"
     )
-    shifting: Literal["auto", "none", "sun", "lind"] = Field(
-        default="auto", description="auto: sun"
+    shifting: Literal["auto", "none", "sun", "lind", "consistent", "transport-velocity"] = Field(
+        default="auto",
+        description="consistent: as sun, and particles take velocity and density along; "
+        "transport-velocity: by a background pressure, without a free surface only; auto: sun",
     )
     tensile_control: Literal["auto", "none", "sun", "monaghan"] = Field(
         default="auto",
@@ -353,9 +355,9 @@ class Numerics(Model):
         default=None,
         description="whether the fluid has one; if absent: under gravity, or without walls",
     )
-    wall: Literal["auto", "adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty"] = (
-        Field(default="auto", description="auto: adami")
-    )
+    wall: Literal[
+        "auto", "adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty", "mirror"
+    ] = Field(default="auto", description="mirror: planes at right angles only; auto: adami")
     integrator: Literal["auto", "symplectic", "predictor-corrector", "rk2", "rk4"] = Field(
         default="auto", description="in time; auto: symplectic"
     )

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
 
 H, GRAVITY, DENSITY = 0.5, 9.81, 1000.0
 TIME = math.sqrt(H / GRAVITY)
-KINDS = ("adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty")
+KINDS = ("adami", "dynamic", "modified-dynamic", "semi-analytical", "penalty", "mirror")
+PLANES = ("mirror",)
+"""Kinds that need right angles."""
 WEDGE = {"polygon": {"points": [[0.5 * H, 0.0], [1.5 * H, 0.0], [H, 0.5 * H]]}}
 PLACES = ("flat", "wedge", "packed wedge")
 """Without a wedge; with one on the lattices of a scene's defaults; with packed particles."""
@@ -66,6 +68,8 @@ def run(resolution: int) -> Level:
     particles = steps = 0
     for place in PLACES:
         for kind in KINDS:
+            if kind in PLANES and place != "flat":
+                continue
             error, probes, energy, leaks, n, k = measure(kind, place, resolution)
             where, bound = f"{kind}, {place}", BOUNDS.get((kind, place))
             figures += [

@@ -1,0 +1,112 @@
+//! The sweep of continuity: which pair terms it fuses.
+
+use super::assembly::{Stage, felt, matrix, outputs, slices};
+use super::config::{DiffusionForm, ShiftingForm};
+use super::solver::Solver;
+use super::timers::Phase;
+use crate::effects::{Antuono, Fourtakas, Molteni, PairTerm, RiemannDiffusion, Shift};
+use crate::simd::Real;
+use crate::step::{DensityRate, ShiftTerm, WallDensityRate};
+use crate::sweep::{Pairs, Source, SumColumns, slot};
+
+impl<R: Real, const D: usize> Solver<R, D> {
+    /// The sweep of continuity, and of the shift over the step `dt`.
+    pub(super) fn sum_density_rates(&mut self, dt: f64) {
+        let c = &self.config;
+        let (h, c0) = (c.smoothing_length, c.sound_speed);
+        match c.density_diffusion.map(|d| (d.form, d.delta)) {
+            None => self.rates_with((), dt),
+            Some((DiffusionForm::Molteni, delta)) => {
+                self.rates_with(Molteni::new(delta, h, c0), dt)
+            }
+            Some((DiffusionForm::Antuono, delta)) => {
+                self.rates_with(Antuono::new(delta, h, c0), dt)
+            }
+            Some((DiffusionForm::Riemann, delta)) => {
+                self.rates_with(RiemannDiffusion::new(delta, c0), dt)
+            }
+            Some((DiffusionForm::Fourtakas, delta)) => {
+                self.rates_with(
+                    Fourtakas::<D>::new(delta, h, c0, c.gamma, self.motion.gravity),
+                    dt,
+                );
+            }
+        }
+        self.timers.book(Phase::Continuity);
+        self.audited(None, Self::add_facet_rates);
+    }
+
+    fn rates_with<T: PairTerm<R, D>>(&mut self, diffusion: T, dt: f64) {
+        match self.shift_over(dt) {
+            None => self.run_density_rates(diffusion, ()),
+            Some(shift) => self.run_density_rates(diffusion, shift),
+        }
+    }
+
+    /// Shifting over the step `dt`, if there is any.
+    pub(super) fn shift_over(&self, dt: f64) -> Option<Shift> {
+        let speed = self.state.speed;
+        self.shifting.map(|(form, around)| match form {
+            ShiftingForm::Sun | ShiftingForm::Consistent => Shift::sun::<D>(&around, speed, dt),
+            ShiftingForm::Lind => Shift::lind::<D>(&around, speed, dt),
+            ShiftingForm::TransportVelocity => {
+                Shift::transport_velocity::<D>(&around, speed, self.config.sound_speed, dt)
+            }
+        })
+    }
+
+    fn run_density_rates<T: PairTerm<R, D>, S: ShiftTerm<R, D>>(&mut self, diffusion: T, shift: S) {
+        let reference_density = self.config.reference_density;
+        let pass = DensityRate {
+            diffusion,
+            shift,
+            reference_density,
+        };
+        let fluid = &mut self.fluid;
+        let mut source = Source::new(&fluid.position, &fluid.cells)
+            .with(slot::VOLUME, &fluid.volume)
+            .with(slot::CONDENSATION, &fluid.condensation)
+            .with_vector(slot::VELOCITY, &fluid.pair_velocity);
+        if let Some(gradient) = &fluid.gradient {
+            source = source.with_vector(slot::GRADIENT, gradient);
+        }
+        let wall = felt(&self.config, &self.wall).map(|w| {
+            Source::new(&w.position, &w.cells)
+                .with(slot::VOLUME, &w.volume)
+                .with(slot::CONDENSATION, &w.condensation)
+                .with_vector(slot::VELOCITY, &w.pair_velocity)
+        });
+        let mut columns = SumColumns::default().scalar(&mut fluid.density_rate);
+        if let Some(shift) = &mut fluid.shift {
+            columns = columns.gradient(slices(shift));
+        }
+        if fluid.sums.len() > matrix::<D>() {
+            let (moment, vector) = fluid.sums.split_at_mut(matrix::<D>());
+            columns = columns.moment(slices(moment)).vector(slices(vector));
+        }
+        let pairs = Pairs {
+            grid: &self.grid,
+            fluid: &source,
+            wall: wall.as_ref(),
+            pass: &pass,
+        };
+        self.sweeper.run_pairs(self.kernel, &pairs, &columns);
+        // Walls that follow the equation of continuity: the same sum, over the fluid.
+        if let Some(w) = &mut self.wall
+            && let Some((_, rate)) = &mut w.density
+        {
+            let target = Source::new(&w.position, &w.cells)
+                .with(slot::VOLUME, &w.volume)
+                .with(slot::CONDENSATION, &w.condensation)
+                .with_vector(slot::VELOCITY, &w.pair_velocity);
+            let pass = WallDensityRate { reference_density };
+            let stage = Stage {
+                grid: &self.grid,
+                sweeper: &self.sweeper,
+                target: &target,
+                source: &source,
+            };
+            stage.run(self.kernel, &pass, outputs([(0, rate)]));
+        }
+    }
+}
