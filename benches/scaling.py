@@ -1,7 +1,7 @@
 """How a step's cost grows with the particles, and how it is shared among threads.
 
     python benches/scaling.py                    # 10 000 to a million particles, minutes
-    python benches/scaling.py --most 10000000    # 2 GiB and some minutes more
+    python benches/scaling.py --most 10000000    # 3 GiB and ten minutes more
     python benches/scaling.py --threads-only
 
 Prints Markdown: nanoseconds per particle-step by phase and bytes per particle over the number of
@@ -13,6 +13,7 @@ phase by phase: an estimate on paper).
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import time
 
@@ -46,8 +47,8 @@ def curve(most: int, threads: int) -> None:
         + " | other | bytes a particle |"
     )
     print("|" + "---|" * (len(PHASES) + 5))
-    particles = 10_000
-    while particles <= most:
+    for half_decades in range(round(2 * math.log10(most / 10_000)) + 1):
+        particles = round(10_000 * 10 ** (half_decades / 2))
         sim, spent, _, steps = measure(particles, threads, 6.0)
         fluid, wall = sim.particles["fluid"], sim.particles["wall"]
         per = {k: v / steps / fluid * 1e9 for k, v in spent.items()}
@@ -59,7 +60,6 @@ def curve(most: int, threads: int) -> None:
             f"| {other:.0f} | {size:.0f} |",
             flush=True,
         )
-        particles = round(particles * 10**0.5)
 
 
 def shares(threads: int) -> None:

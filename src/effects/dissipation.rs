@@ -202,7 +202,7 @@ impl<R: Real, const D: usize> PairPass<R, D> for Dissipation<D> {
             let own = own.values();
             let pressure = self.pressure(own.pressure(), own.rate()).to_f64();
             let density = 1.0 + own.condensation().to_f64();
-            let rate: R = shift.source(sums);
+            let rate: R = shift.source(sums, shift.surroundings(sums));
             totals[6] -= volume * pressure * rate.to_f64() / density;
         }
     }

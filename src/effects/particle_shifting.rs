@@ -157,26 +157,42 @@ impl Shift {
     /// the moment matrix, and particles near the surface, where it says nothing of the spacing, are left out; else it is
     /// among the pairs' terms but for its last part. A relaxed form of taking density anew from the kernel sum
     /// (Colagrossi & Landrini 2003; Zhang, Hu & Adams 2017).
+    ///
+    /// `least` is of [`Self::surroundings`].
     #[inline(always)]
-    pub fn source<R: Real, const D: usize>(&self, sums: &Sums<R, D>) -> R {
+    pub fn source<R: Real, const D: usize>(&self, sums: &Sums<R, D>, least: R) -> R {
         let following = R::from_f64(self.following);
         let at_rest = R::from_f64(self.concentration);
         if !self.free_surface {
             return -following * at_rest;
         }
         let (low, high) = (R::from_f64(INTERIOR), R::from_f64(SURROUNDED));
-        let surrounded = (Lanes::min(sums.least_moment(), high) - low) / (high - low);
+        let surrounded = (least - low) / (high - low);
         let excess = sums.trace() * R::from_f64(1.0 / D as f64) - at_rest;
         following * Lanes::max(surrounded, R::default()) * excess
     }
 
-    /// The shift of a particle in m, from its sums.
+    /// How far a particle is surrounded by others: the least eigenvalue of its moment matrix, as far as it matters here.
     #[inline(always)]
-    pub fn finish<R: Real, const D: usize>(&self, own: &Own<R, D>, sums: &Sums<R, D>) -> [R; D] {
+    pub fn surroundings<R: Real, const D: usize>(&self, sums: &Sums<R, D>) -> R {
+        if self.free_surface {
+            sums.least_moment(SURROUNDED)
+        } else {
+            R::from_f64(SURROUNDED)
+        }
+    }
+
+    /// The shift of a particle in m, from its sums; `least` is of [`Self::surroundings`].
+    #[inline(always)]
+    pub fn finish<R: Real, const D: usize>(
+        &self,
+        own: &Own<R, D>,
+        sums: &Sums<R, D>,
+        least: R,
+    ) -> [R; D] {
         let zero = R::default();
         let mut shift = sums.gradient.map(|g| -g);
         if self.free_surface {
-            let least = sums.least_moment();
             if least < R::from_f64(SURFACE) {
                 return [zero; D];
             }

@@ -44,7 +44,7 @@ impl TensileControl {
     #[inline(always)]
     fn tension<R: Real, const D: usize>(&self, pressure: R, sums: &Sums<R, D>) -> R {
         let zero = R::default();
-        if self.free_surface && sums.least_moment() < R::from_f64(INTERIOR) {
+        if self.free_surface && sums.least_moment(INTERIOR) < R::from_f64(INTERIOR) {
             return zero;
         }
         Lanes::min(pressure, zero)

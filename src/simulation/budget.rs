@@ -207,7 +207,8 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 sums.moment[k] = column[i];
             }
             let pressure: R = self.motion.eos.pressure(fluid.condensation[i]);
-            let stored = fluid.volume[i] * pressure * shift.source(&sums);
+            let source = shift.source(&sums, shift.surroundings(&sums));
+            let stored = fluid.volume[i] * pressure * source;
             [-stored.to_f64() / (1.0 + fluid.condensation[i].to_f64())]
         });
         power

@@ -93,8 +93,9 @@ impl<R: Real, const D: usize> ShiftTerm<R, D> for () {
 impl<R: Real, const D: usize> ShiftTerm<R, D> for Shift {
     #[inline(always)]
     fn write(&self, own: &Own<R, D>, sums: &mut Sums<R, D>) {
-        sums.scalar += self.source(sums);
-        sums.gradient = self.finish(own, sums);
+        let least = self.surroundings(sums);
+        sums.scalar += self.source(sums, least);
+        sums.gradient = self.finish(own, sums, least);
     }
 }
 

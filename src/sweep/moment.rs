@@ -71,9 +71,9 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
         }
     }
 
-    /// The least eigenvalue of the moment matrix: 1 in the interior, small at a free surface.
+    /// The least eigenvalue of the moment matrix, 1 in the interior and small at a free surface; `most` where it is above.
     #[inline(always)]
-    pub fn least_moment(&self) -> L::Real {
+    pub fn least_moment(&self, most: f64) -> L::Real {
         let half = L::Real::from_f64(0.5);
         let (xx, yy, xy) = (
             self.moment[0].sum(),
@@ -82,20 +82,29 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
         );
         if D == 2 {
             let (mean, difference) = (half * (xx + yy), half * (xx - yy));
-            return mean - (difference * difference + xy * xy).sqrt();
+            let least = mean - (difference * difference + xy * xy).sqrt();
+            return Lanes::min(least, L::Real::from_f64(most));
         }
         let (zz, yz, xz) = (
             self.moment[3].sum(),
             self.moment[4].sum(),
             self.moment[5].sum(),
         );
-        // Trigonometric solution of the cubic (Smith 1961), in double precision.
         let [xx, yy, zz, xy, yz, xz] = [xx, yy, zz, xy, yz, xz].map(Real::to_f64);
+        // Most particles are far from a surface: there the matrix less `most` is positive definite, as its leading minors
+        // tell (Sylvester), and the cubic need not be solved.
+        let (a, b, c) = (xx - most, yy - most, zz - most);
+        let plane = a * b - xy * xy;
+        let determinant = c * plane - yz * (a * yz - xy * xz) + xz * (xy * yz - b * xz);
+        if a > 0.0 && plane > 0.0 && determinant > 0.0 {
+            return L::Real::from_f64(most);
+        }
+        // Trigonometric solution of the cubic (Smith 1961), in double precision.
         let mean = (xx + yy + zz) / 3.0;
         let off = xy * xy + yz * yz + xz * xz;
         let p2 = (xx - mean).powi(2) + (yy - mean).powi(2) + (zz - mean).powi(2) + 2.0 * off;
         if p2 <= 1e-20 {
-            return L::Real::from_f64(mean);
+            return L::Real::from_f64(mean.min(most));
         }
         let p = (p2 / 6.0).sqrt();
         let (a, b, c) = ((xx - mean) / p, (yy - mean) / p, (zz - mean) / p);
@@ -103,6 +112,7 @@ impl<L: Lanes, const D: usize> Sums<L, D> {
         let half_determinant =
             0.5 * (a * (b * c - e * e) - d * (d * c - e * f) + f * (d * e - b * f));
         let angle = half_determinant.clamp(-1.0, 1.0).acos() / 3.0;
-        L::Real::from_f64(mean + 2.0 * p * (angle + 2.0 * std::f64::consts::PI / 3.0).cos())
+        let least = mean + 2.0 * p * (angle + 2.0 * std::f64::consts::PI / 3.0).cos();
+        L::Real::from_f64(least.min(most))
     }
 }
