@@ -29,6 +29,8 @@ LINE = re.compile(r"^(2d|3d) (mixed|f64)\s+(\w+)\s+([\d.]+)\s+(\d+)$", re.MULTIL
 HEADING = "## What an absent effect costs\n"
 CATALOGUE = "src/simulation/catalogue.rs"
 ASSEMBLY = "src/simulation/assembly.rs"
+RATES = "src/simulation/density_rates.rs"
+WALLS = "src/simulation/wall_values.rs"
 SOLVER = "src/simulation/solver.rs"
 
 Counts = Mapping[tuple[str, str, str], tuple[float, int]]
@@ -85,7 +87,7 @@ EFFECTS: dict[str, tuple[Cut, ...]] = {
     "Herschel-Bulkley": (stage("herschel_bulkley"),),
     "Riemann dissipation": (
         stage("riemann_viscosity"),
-        arm(ASSEMBLY, "Some((DiffusionForm::Riemann, delta))"),
+        arm(RATES, "Some((DiffusionForm::Riemann, delta))"),
     ),
     "tensile control": (arm(CATALOGUE, "TensileForm::Sun"),),
     "artificial stress": (arm(CATALOGUE, "TensileForm::Monaghan"),),
@@ -98,15 +100,15 @@ EFFECTS: dict[str, tuple[Cut, ...]] = {
         Cut("src/step/motion.rs", r"pressure \+ damper \* rate\[i\]", ";", "pressure;"),
     ),
     "particle shifting": (
-        body(ASSEMBLY, "rates_with", "let _ = dt; self.run_density_rates(diffusion, ())"),
-        body(ASSEMBLY, "shift_over", "let _ = dt; None"),
+        body(RATES, "rates_with", "let _ = dt; self.run_density_rates(diffusion, ())"),
+        body(RATES, "shift_over", "let _ = dt; None"),
         Cut(SOLVER, r"if let Some\(shift\) = &self\.fluid\.shift", "}", "{ let _ = shift; }"),
     ),
     "moving walls": (
         body(SOLVER, "move_walls", "let _ = time;"),
         Cut(SOLVER, r"set\.moving = Some\(", ";"),
-        Cut(ASSEMBLY, r"if let Some\(moving\) = &wall\.moving", "}", "{ let _ = moving; }"),
-        Cut(ASSEMBLY, r"accelerated: wall\.moving\.is_some\(\)", ",", "accelerated: false,"),
+        Cut(WALLS, r"if let Some\(moving\) = &wall\.moving", "}", "{ let _ = moving; }"),
+        Cut(WALLS, r"accelerated: wall\.moving\.is_some\(\)", ",", "accelerated: false,"),
     ),
     "gravity over time": (body("src/simulation/gravity.rs", "set_gravity", "let _ = time;"),),
     "walls of facets": (

@@ -47,8 +47,9 @@ COARSEST_ACROSS = 8
 POWER = {"acoustic": 1.0, "viscous": 2.0, "force": 0.5, "fixed": 0.0}
 """Power of the spacing that each limit of the time step goes with."""
 
-MODEL = 0.08
-"""Relative half-width of the wall time's interval that the model adds, at about 95 %."""
+MODEL = 0.15
+"""Relative half-width of the wall time's interval that the model adds, at about 95 %. Over five
+scenes, on a machine whose speed wanders, it was wrong by up to 18 %, its pilots' noise included."""
 
 STEPS = 0.04
 """The same of the steps: what a finer run resolves in speed that a coarse one does not."""
