@@ -1,6 +1,6 @@
 """`python -m tests.accuracy [CASE ...]`: runs the study of kolk's choices, writes `docs/accuracy`.
 
-About a quarter of an hour on two quiet cores; `--full` takes finer ladders, and hours.
+About half an hour on two quiet cores; `--full` takes finer ladders, and hours.
 """
 
 from __future__ import annotations
