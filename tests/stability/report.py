@@ -7,16 +7,22 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
+from kolk.output.atomic import replacing
+
 from .suite import FOLDER, Figure, Result, get, names
 
 PAGE = FOLDER.parents[1] / "docs" / "stability.md"
 RESULTS = FOLDER / "results.json"
 
+WITHOUT = "without its remedy"
+"""The variant of a case that must fail."""
+
 HEAD = """# Stability
 
 Cases in which SPH codes blow up, leak, clump or lose energy, and what kolk shows on each. All run
 with the defaults that a user gets. Written by `python -m tests.stability --full`, which runs every
-case (`... --full CASE ...` some, keeping the others' figures); `pytest` runs the short versions and
+variant that has no figures of this engine yet (`--full CASE ...` some cases, `--again` also those
+that have); a run that is cut goes on from where it was. `pytest` runs the short versions and
 `pytest -m stability` the full ones.
 
 A figure has a limit, beyond which the test fails, or a goal, which is shown as met or not. Retries
@@ -24,16 +30,21 @@ are how often the guard went back to an earlier state and on with a shorter step
 """
 
 
-def keep(name: str, results: Sequence[Result], without: Result | None, machine: str) -> None:
-    """Keeps the results of a case, in place of its earlier ones."""
+def keep(name: str, result: Result, where: dict[str, str]) -> None:
+    """Keeps the result of a variant, in place of its earlier one; ``where``: machine, engine."""
+    # Read just before it is written: another process may have kept others meanwhile.
     everything = read()
-    everything[name] = {
-        "machine": machine,
-        "results": [_plain(result) for result in results],
-        "without": None if without is None else _plain(without),
-    }
+    variants = {*get(name).full, WITHOUT}
+    everything[name] = {v: of for v, of in everything.get(name, {}).items() if v in variants}
+    everything[name][result.variant] = _plain(result) | where
     text = json.dumps(everything, indent=1, ensure_ascii=False, sort_keys=True, allow_nan=False)
-    RESULTS.write_text(text + "\n", encoding="utf-8")
+    with replacing(RESULTS) as temporary:
+        temporary.write_text(text + "\n", encoding="utf-8")
+
+
+def kept(name: str, variant: str, engine: str) -> bool:
+    """Whether there is a result of a variant, and of this engine."""
+    return bool(read().get(name, {}).get(variant, {}).get("engine") == engine)
 
 
 def _plain(result: Result) -> dict[str, Any]:
@@ -44,7 +55,8 @@ def _plain(result: Result) -> dict[str, Any]:
 
 def _result(plain: dict[str, Any]) -> Result:
     figures = tuple(Figure(**(f | {"value": float(f["value"])})) for f in plain["figures"])
-    return Result(**(plain | {"figures": figures}))
+    known = {key: value for key, value in plain.items() if key not in ("machine", "engine")}
+    return Result(**(known | {"figures": figures}))
 
 
 def read() -> dict[str, Any]:
@@ -57,27 +69,47 @@ def read() -> dict[str, Any]:
 
 def page() -> str:
     """The whole page."""
-    kept = read()
-    return "\n".join([HEAD, *(_section(name, kept.get(name)) for name in names())])
+    found = read()
+    return "\n".join([HEAD, *(_section(name, found.get(name, {})) for name in names())])
 
 
-def _section(name: str, kept: dict[str, Any] | None) -> str:
+def _section(name: str, found: dict[str, Any]) -> str:
     case = get(name)
     lines = [f"## {case.title}", "", f"{case.setup} Typical failure: {case.failure}.", ""]
     if case.remarks:
         lines += [case.remarks, ""]
-    if kept is None:
-        return "\n".join([*lines, "Not run yet.", ""])
-    lines += ["| variant | quantity | value | limit | |", "|---|---|---|---|---|"]
-    for plain in kept["results"]:
-        result = _result(plain)
-        lines += [_row(result.variant if k == 0 else "", f) for k, f in enumerate(result.figures)]
+    there = [variant for variant in case.full if variant in found]
+    if there:
+        lines += ["| variant | quantity | value | limit | |", "|---|---|---|---|---|"]
+    for variant in there:
+        result = _result(found[variant])
+        rows = [_row(variant if k == 0 else "", f) for k, f in enumerate(result.figures)]
+        if result.stopped:
+            rows = [f"| {variant} | stopped by the guard | | | **not met** |"]
         cost = f"{result.particles:,} particles, {result.steps:,} steps, {result.seconds:,.0f} s"
-        lines.append(f"| | *{cost}* | {result.retries} retries | | |")
-    if kept["without"] is not None:
-        missed = ", ".join(f"{f} (limit {f.limit})" for f in _result(kept["without"]).missed)
+        lines += [*rows, f"| | *{cost}* | {result.retries} retries | | |"]
+    for variant in there:
+        if stopped := found[variant]["stopped"]:
+            lines += ["", f"{variant} was stopped: {stopped}"]
+    if missing := [variant for variant in case.full if variant not in found]:
+        lines += ["", f"Not run yet: {'; '.join(missing)}."]
+    if WITHOUT in found:
+        missed = ", ".join(f"{f} (limit {f.limit})" for f in _result(found[WITHOUT]).missed)
         lines += ["", f"Without {case.remedy}: {missed or 'no limit is missed'}."]
-    return "\n".join([*lines, "", f"On {kept['machine']}.", ""])
+    lines += ["", *_where(found, [*there, *([WITHOUT] if WITHOUT in found else [])])]
+    return "\n".join(lines)
+
+
+def _where(found: dict[str, Any], variants: Sequence[str]) -> list[str]:
+    """Which machines and engines the figures are of."""
+    engines: dict[str, list[str]] = {}
+    for variant in variants:
+        of = f"engine {found[variant]['engine']}, {found[variant]['machine']}"
+        engines.setdefault(of, []).append(variant)
+    if len(engines) == 1:
+        return [f"By {next(iter(engines))}.", ""]
+    parts = [f"{of}: {'; '.join(found)}" for of, found in engines.items()]
+    return [f"By {', by '.join(parts)}.", ""] if parts else []
 
 
 def _row(variant: str, figure: Figure) -> str:

@@ -10,6 +10,8 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
+from kolk.errors import InstabilityError
+
 FOLDER = Path(__file__).parent
 
 
@@ -63,6 +65,13 @@ class Result:
     steps: int = 0
     retries: int = 0
     seconds: float = 0.0
+    stopped: str = ""
+    """What the guard said where it stopped the run; such a result misses its limits."""
+
+    @property
+    def failed(self) -> bool:
+        """Whether the guard stopped it or a figure is beyond its limits."""
+        return bool(self.stopped or self.missed)
 
     @property
     def missed(self) -> list[Figure]:
@@ -103,8 +112,11 @@ def get(name: str) -> Case:
     return case
 
 
-def timed(run: Callable[[], Result]) -> Result:
-    """The result with the seconds that it took."""
+def timed(run: Callable[[], Result], variant: str = "") -> Result:
+    """The result with the seconds that it took; a run that the guard stops is one, too."""
     begun = time.perf_counter()
-    result = run()
+    try:
+        result = run()
+    except InstabilityError as error:
+        result = Result(variant, (), steps=error.step or 0, stopped=str(error))
     return replace(result, seconds=time.perf_counter() - begun)

@@ -2,18 +2,33 @@
 
 from __future__ import annotations
 
+import hashlib
 import os
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 
 import kolk
+from kolk.output.checkpoint import Checkpoint, read_checkpoint, write_checkpoint
 from kolk.output.stability import leaks, voids
 
-from .suite import Figure, Result
+from .suite import FOLDER, Figure, Result
 
 THREADS = int(os.environ.get("KOLK_STABILITY_THREADS", "1"))
 """The figures do not depend on it: a run has the same bits for every number of threads."""
+
+
+STATES = FOLDER / ".states"
+"""Where long runs keep their states, to go on from when they were cut."""
+
+_engine = ""
+
+
+def keep_states(engine: str) -> None:
+    """Lets runs keep their states at every look, and go on from those that ``engine`` left."""
+    global _engine
+    _engine = engine
 
 
 def simulation(
@@ -55,12 +70,43 @@ class Watch:
 
     def run(self, until: float, looks: int = 20) -> Watch:
         """Runs to ``until`` (s), looking evenly; gives itself."""
-        first = self.sim.time
-        self.look()
-        for k in range(1, looks + 1):
+        kept = self._kept(until, looks)
+        first, done = self.sim.time, 0
+        if kept is not None and kept.exists():
+            first, done = self._go_on(read_checkpoint(kept))
+        else:
+            self.look()
+        for k in range(done + 1, looks + 1):
             self.sim.advance_to(first + (until - first) * k / looks)
             self.look()
+            if kept is not None and self.sim.step_count > 2000:
+                self._keep(kept, first, k)
+        if kept is not None:
+            kept.unlink(missing_ok=True)
         return self
+
+    def _kept(self, until: float, looks: int) -> Path | None:
+        """The file that keeps the state of a run to ``until``; None: states are not kept."""
+        if not _engine:
+            return None
+        scene, begun = self.sim.scene, f"{self.sim.step_count} {until!r} {looks}"
+        what = hashlib.sha256(f"{_engine} {begun} {scene.engine_config()}".encode()).hexdigest()[
+            :16
+        ]
+        return STATES / f"{scene.name}-{sum(self.sim.particles.values())}-{what}.h5"
+
+    def _keep(self, path: Path, first: float, done: int) -> None:
+        seen = {key: value for key, value in vars(self).items() if key != "sim"}
+        path.parent.mkdir(exist_ok=True)
+        book = {"seen": seen, "first": first, "done": done}
+        write_checkpoint(path, Checkpoint(self.sim.state(), book, self.sim.scene.name))
+
+    def _go_on(self, kept: Checkpoint) -> tuple[float, int]:
+        """Takes over a state and what was seen until then; when it began, and looks since."""
+        self.sim.restore(kept.state)
+        for key, value in kept.book["seen"].items():
+            setattr(self, key, value)
+        return kept.book["first"], kept.book["done"]
 
     def steps(self, count: int, looks: int = 20) -> Watch:
         """Runs ``count`` steps; gives itself."""
