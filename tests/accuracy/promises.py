@@ -172,11 +172,12 @@ def true_error(trial: Trial, scene: kolk.Scene, of: str, threads: int) -> float:
     return max(errors)
 
 
-def budget(threads: int) -> None:
+def budget(threads: int, cases: Sequence[str]) -> None:
     """Runs what each budget leads to and sets the time used beside it."""
     head("scene", "budget", "spacing", "used", "share", "")
     kept = 0
-    for name, seconds in BUDGETS:
+    chosen = [(name, seconds) for name, seconds in BUDGETS if not cases or name in cases]
+    for name, seconds in chosen:
         begun = clock.perf_counter()
         try:
             found = choose(kolk.load(name), budget=seconds, threads=threads, quiet=True)
@@ -196,7 +197,7 @@ def budget(threads: int) -> None:
             f"{used / seconds:.0%}",
             "kept" if good else "NOT kept",
         )
-    print(f"\n{kept} of {len(BUDGETS)} budgets used within 15 %\n", flush=True)
+    print(f"\n{kept} of {len(chosen)} budgets used within 15 %\n", flush=True)
 
 
 def estimates(threads: int) -> None:
@@ -238,7 +239,7 @@ def main() -> int:
     if "tolerance" in wanted:
         tolerance(chosen.threads, chosen.case, blind=chosen.blind)
     if "budget" in wanted:
-        budget(chosen.threads)
+        budget(chosen.threads, chosen.case)
     return 0
 
 

@@ -14,6 +14,7 @@ import kolk
 from kolk.cli.promises import share, time
 from kolk.errors import SceneError
 from kolk.study import budget as budgeting
+from kolk.study import estimate as estimating
 from kolk.study import tolerance as tolerating
 from kolk.study.estimate import CostModel, Interval, coarse_scene, estimate
 from kolk.study.job import make_job
@@ -27,15 +28,18 @@ from test_accuracy_study import made_up, rows, small
 
 
 def pilot(scene: kolk.Scene, spacing: float, limit: str = "acoustic") -> Pilot:
-    """A pilot of a machine that takes 1 µs for a particle-step, and 100 (or 5e3 h²) steps."""
-    counted = sum(len(b) for b in scene.replace(spacing=spacing).bodies())
+    """A pilot of a machine that takes 1 µs for a step of one fluid particle, a twentieth for one of
+    a wall, a little less for one of many, and 100 (or 5e3 h²) steps."""
+    bodies = scene.replace(spacing=spacing).bodies()
+    counted = sum(len(b) for b in bodies)
+    fluid = sum(len(b) for b in bodies if b.kind == "fluid")
     power = {"acoustic": 1.0, "viscous": 2.0}[limit]
     steps = 200.0 * (0.02 / spacing) ** power
-    each = 1e-6 * counted
+    each = 1e-6 * (fluid + 0.05 * (counted - fluid)) ** 0.9
     t = np.linspace(0.0, 1.0, 50)
     return Pilot(
         spacing=spacing,
-        particles={"fluid": counted, "wall": 0, "total": counted},
+        particles={"fluid": fluid, "wall": counted - fluid, "total": counted},
         threads=1,
         until=scene.until,
         frames=11,
@@ -187,27 +191,101 @@ def test_nonsense_is_refused() -> None:
         time("ten")
 
 
-@pytest.mark.parametrize("seconds", [20.0, 60.0, 600.0])
-def test_a_budget_is_used_and_kept(monkeypatch: pytest.MonkeyPatch, seconds: float) -> None:
-    def calibrated(scene: kolk.Scene, **_: Any) -> CostModel:
-        found = pilot(scene, scene.spacing)
-        return CostModel(scene, found, found)
+def slower_later(time: Any) -> Any:
+    """Seconds of steps until a share of the scene's time, over those at the time step's end, of a
+    flow that begins quietly: each of its steps takes 1 + 2 t of the first."""
+    return (time + time**2) / 2.0
 
-    monkeypatch.setattr(budgeting, "calibrate", calibrated)
+
+@pytest.fixture
+def machine(monkeypatch: pytest.MonkeyPatch) -> list[Pilot]:
+    """Pilots are of a made-up machine whose steps take ever longer; those flown are in here."""
+    flown: list[Pilot] = []
+
+    def flying(job: Any, seconds: float) -> Pilot:
+        whole = pilot(tank(), job.spacing)
+        table = np.array(whole.stations)
+        table[:, 2] = table[-1, 2] * slower_later(table[:, 0] / whole.until)
+        kept = max(2, int(np.searchsorted(table[:, 2], seconds)) + 1)
+        shown = {"stations": table[:kept].tolist(), "limits": whole.limits[:kept]}
+        flown.append(Pilot(**{**whole.__dict__, **shown}))
+        return flown[-1]
+
+    monkeypatch.setattr(budgeting, "fly", flying)
+    monkeypatch.setattr(estimating, "fly", flying)
     monkeypatch.setattr(budgeting, "study_of", lambda scene: None)
+    return flown
+
+
+def taken(scene: kolk.Scene, spacing: float) -> float:
+    """Seconds of a run on that machine, but for a few for frames and checkpoints."""
+    return float(pilot(scene, spacing).stations[-1][2])
+
+
+@pytest.mark.parametrize("seconds", [20.0, 60.0, 600.0])
+def test_a_budget_is_used_and_kept(machine: list[Pilot], seconds: float) -> None:
+    """Though the pilot at the chosen spacing sees the beginning alone, where a step takes half."""
     scene = tank()
     found = choose(scene, budget=seconds, quiet=True)
-    wall = CostModel(scene, *[pilot(scene, found.scene.spacing)] * 2).at(found.scene.spacing).wall
-    assert 0.8 * seconds <= wall.value <= seconds
+    assert not machine[-1].whole and machine[-1].stations[-1][0] < 0.2 * scene.until
+    assert 0.85 * seconds <= taken(scene, found.scene.spacing) <= seconds
 
 
-def test_too_small_a_budget_is_refused_with_what_would_do(monkeypatch: pytest.MonkeyPatch) -> None:
-    def calibrated(scene: kolk.Scene, **_: Any) -> CostModel:
-        found = pilot(scene, scene.spacing)
-        return CostModel(scene, found, found)
+def test_what_pilots_take_is_a_small_share_of_the_budget(machine: list[Pilot]) -> None:
+    choose(tank(), budget=600.0, quiet=True)
+    assert sum(found.stations[-1][2] for found in machine) < 0.2 * 600.0
+    assert any(found.whole for found in machine), "none has seen the whole scene"
 
-    monkeypatch.setattr(budgeting, "calibrate", calibrated)
-    monkeypatch.setattr(budgeting, "study_of", lambda scene: None)
+
+def test_the_profile_carries_the_cost_of_a_step_over_to_where_no_pilot_has_been(
+    machine: list[Pilot],
+) -> None:
+    scene = tank()
+    coarse = estimating.fly(make_job(scene.replace(spacing=0.04), None, 1), 100.0)
+    fine = estimating.fly(make_job(scene.replace(spacing=0.01), None, 1), 0.1 * taken(scene, 0.01))
+    assert coarse.whole and fine.stations[-1][0] < 0.3 * scene.until
+    found = CostModel(scene, coarse, fine).at(0.01).parts["steps"]
+    assert found == pytest.approx(taken(scene, 0.01), rel=0.05)
+    blind = CostModel(scene, fine, fine).at(0.01).parts["steps"]
+    assert blind < 0.8 * taken(scene, 0.01), "the start tells as much as the whole"
+
+
+def test_pilots_that_contradict_each_other_are_told_and_hold_little(machine: list[Pilot]) -> None:
+    scene = tank()
+    coarse = estimating.fly(make_job(scene.replace(spacing=0.04), None, 1), 100.0)
+    fine = estimating.fly(make_job(scene.replace(spacing=0.01), None, 1), 0.1 * taken(scene, 0.01))
+    # Something else had the machine while the fine one flew.
+    slow = [[t, n, 2.0 * s, p] for t, n, s, p in fine.stations]
+    quiet, busy = (
+        CostModel(scene, coarse, fine),
+        CostModel(scene, coarse, Pilot(**{**fine.__dict__, "stations": slow})),
+    )
+    assert quiet.contradiction < 1.0 and busy.contradiction > 2.0
+    ratio = busy.at(0.01).parts["steps"] / quiet.at(0.01).parts["steps"]
+    assert 1.2 < ratio < 1.9, "neither ignored nor believed alone"
+
+
+def test_a_pilot_that_the_machine_disturbed_is_flown_again(
+    machine: list[Pilot], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    undisturbed, flights = budgeting.fly, []
+
+    def disturbed(job: Any, seconds: float) -> Pilot:
+        found = undisturbed(job, seconds)
+        flights.append(found)
+        if len(flights) > 1:
+            return found
+        slow = [[t, n, 2.5 * s, p] for t, n, s, p in found.stations]
+        return Pilot(**{**found.__dict__, "stations": slow})
+
+    monkeypatch.setattr(budgeting, "fly", disturbed)
+    scene = tank()
+    found = choose(scene, budget=200.0, quiet=True)
+    assert len(flights) > 1
+    assert 0.85 * 200.0 <= taken(scene, found.scene.spacing) <= 200.0
+
+
+def test_too_small_a_budget_is_refused_with_what_would_do(machine: list[Pilot]) -> None:
     with pytest.raises(PromiseError, match="give it"):
         choose(tank(), budget=0.001, quiet=True)
 

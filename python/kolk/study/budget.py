@@ -7,22 +7,44 @@ import time as clock
 
 from kolk.progress import duration
 from kolk.scene import Scene
+from kolk.simulation import Precision
 
-from .estimate import CostModel, calibrate
+from .cost import CostModel
+from .estimate import affordable, survey
+from .job import make_job
 from .known import study_of
-from .ladder import DEFAULT, Variant, fits, snapped_finer
+from .ladder import DEFAULT, Variant, fits, snapped
+from .pilot import fly
 from .promise import USED, Limits, Promise, PromiseError
 from .study import Study
 from .words import percent
 
-PILOT = 3.0
-"""Seconds of a pilot, at most a fiftieth of the budget, but at least half a second."""
+SHARE_OF_SURVEY = 0.05
+"""Share of a budget for a pilot of the whole scene."""
 
-NEAR = 0.1
+SHARE_OF_PILOT = 0.07
+"""Share of a budget for a pilot at the spacing that is likely."""
+
+SHORTEST = 0.5
+"""Seconds that a pilot gets at least."""
+
+LONGEST = 60.0
+"""Seconds that the pilot at the likely spacing gets at most: then it knows what a step costs."""
+
+NEAR = 0.2
 """Logarithm of a ratio of spacings within which another pilot would tell nothing new."""
 
-SHARE_OF_PILOTS = 0.15
+CONTRADICTORY = 2.0
+"""Standard deviations between two pilots beyond which a third is flown."""
+
+MOST_PILOTS = 3
+"""Pilots at a likely spacing at most."""
+
+SHARE_OF_PILOTS = 0.25
 """Share of a budget after which no further pilot is flown."""
+
+SNAPPED = 0.92
+"""Least share of the time that is left that a spacing takes which fills the fluid evenly."""
 
 FEWEST_ACROSS = 8
 """Particles across the thinnest extent of the fluid in the coarsest run that a budget may get."""
@@ -30,32 +52,18 @@ FEWEST_ACROSS = 8
 
 def for_budget(scene: Scene, budget: float, quantity: str | None, limits: Limits) -> Promise:
     """See `promise.choose`; raises what it raises."""
-    begun, threads = limits.begun, limits.threads
+    begun = limits.begun
     study = study_of(scene)
     variant = _best_for(study, budget) if study is not None else Variant(DEFAULT)
     base = variant.scene(scene, scene.spacing)
     precision = variant.precision or limits.precision
-    seconds = min(PILOT, max(0.5, budget / 50.0))
-    model = calibrate(base, precision=precision, threads=threads, seconds=seconds)
-    spacing = base.spacing
-    for _ in range(2):
-        spent = clock.perf_counter() - begun
-        spacing = _spacing_within(model, USED * (budget - spent))
-        if abs(math.log(spacing / model.fine.spacing)) < NEAR or spent > SHARE_OF_PILOTS * budget:
-            break
-        # Again where the run will be: what a step costs changes with the number of particles.
-        coarse = model.coarse if not model.fine.whole else None
-        model = calibrate(
-            base.replace(spacing=spacing),
-            precision=precision,
-            threads=threads,
-            seconds=seconds,
-            coarse=coarse if coarse is not None else model.fine,
-        )
+    model = _piloted(base, budget, precision, limits)
     left = USED * (budget - (clock.perf_counter() - begun))
-    spacing = snapped_finer(base, _spacing_within(model, left))
-    if model.wall(spacing) > left:
-        spacing = _spacing_within(model, left)
+    spacing = _spacing_within(model, left)
+    # One that fills the fluid with whole particles, where it takes about as long.
+    even = snapped(base, spacing)
+    if SNAPPED < model.wall(even) / left <= 1.0 / USED:
+        spacing = even
     found = model.at(spacing)
     settings = "" if variant.label == DEFAULT else f" and {variant.label}"
     reasons = [
@@ -95,6 +103,37 @@ def for_budget(scene: Scene, budget: float, quantity: str | None, limits: Limits
     )
 
 
+def _piloted(base: Scene, budget: float, precision: Precision | None, limits: Limits) -> CostModel:
+    """The cost model by pilots that go nearer and nearer to what the budget leads to.
+
+    First the whole scene, coarse: how its steps change on the way. Then the first seconds at the
+    spacing that this leads to: what a step costs there; and again where that leads far away, or
+    where the two contradict each other.
+    """
+    whole = survey(
+        base,
+        precision=precision,
+        threads=limits.threads,
+        seconds=max(SHORTEST, SHARE_OF_SURVEY * budget),
+    )
+    model = CostModel(base, whole, whole)
+    seconds = min(max(SHORTEST, SHARE_OF_PILOT * budget), LONGEST)
+    for _ in range(MOST_PILOTS):
+        spacing = _spacing_within(model, USED * (limits.left - seconds))
+        settled = abs(math.log(spacing / model.fine.spacing)) < NEAR
+        if settled and model.contradiction < CONTRADICTORY:
+            break
+        there = affordable(base.replace(spacing=spacing))
+        again = CostModel(base, whole, fly(make_job(there, precision, limits.threads), seconds))
+        # Pilots that contradict each other saw the machine at different speeds: of two at about
+        # the same spacing the one that agrees with that of the whole scene.
+        if not settled or again.contradiction < model.contradiction:
+            model = again
+        if limits.left < (1.0 - SHARE_OF_PILOTS) * budget:
+            break
+    return model
+
+
 def _best_for(study: Study, seconds: float) -> Variant:
     """The variant with the least error for a time, as far as the study's laws go."""
     best, least = study.variants[0], math.inf
@@ -126,16 +165,7 @@ def _spacing_within(model: CostModel, seconds: float) -> float:
             f"still is one ({coarsest:.3g} m, {FEWEST_ACROSS} particles across the fluid) takes "
             f"about {duration(shortest.value)}: give it {duration(2.0 * shortest.high)} or more"
         )
-    low, high = math.log(coarsest) - math.log(64.0), math.log(coarsest)
-    for _ in range(40):
-        middle = 0.5 * (low + high)
-        if model.wall(math.exp(middle)) > seconds:
-            low = middle
-        else:
-            high = middle
-        if high - low < 0.002:
-            break
-    spacing = math.exp(high)
+    spacing = model.spacing_for(seconds, coarsest)
     memory = model.at(spacing).memory
     if memory.high > available():
         raise PromiseError(
