@@ -180,7 +180,7 @@ def test_a_scene_is_described_in_words() -> None:
                     {"name": "a", "shape": {"box": {"from": [0.7, 0.0], "to": [0.72, 0.3]}}},
                 ]
             },
-            "is 1 layers thick|is 2 layers thick",
+            "is 1 layer thick",
         ),
         (
             {

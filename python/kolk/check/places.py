@@ -38,7 +38,8 @@ def _crowds(scene: Scene, bodies: list[Body]) -> list[str]:
     return [
         f"{int(near.sum()):,} particles are nearer than half a spacing to another, such as those "
         f"{of} at {where}: they will fly apart. Bodies that touch are best filled from one corner, "
-        "a whole number of spacings long"
+        "a whole number of spacings long; beside slanted or curved walls with "
+        'arrangement = "packed"'
     ]
 
 

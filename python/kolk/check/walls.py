@@ -37,18 +37,19 @@ def layers(scene: Scene, wall: Wall) -> int:
     if isinstance(shape, Tank):
         return scene.wall_layers
     points, steps = lattice(shape, scene.spacing, scene.wall_layers)
-    deepest = float(-shape.distance(points).min())
-    # The deepest particle of a plate of n layers lies half of them, rounded up, behind a face.
-    depth = max(1, math.ceil(deepest / float(steps.min()) - 1e-6))
-    return min(scene.wall_layers, 2 * depth)
+    # In the middle of a plate lies a particle, or the middle of a cell of the lattice.
+    middles = points + 0.5 * steps
+    deepest = max(float(-shape.distance(at).min()) for at in (points, middles))
+    return min(scene.wall_layers, max(1, round(2.0 * deepest / float(steps.min()))))
 
 
 def _thin(scene: Scene) -> list[str]:
     found: list[str] = []
     for wall in scene.wall:
         if wall.shape is not None and (deep := layers(scene, wall)) < scene.wall_layers:
+            thick = "1 layer" if deep == 1 else f"{deep} layers"
             found.append(
-                f"wall '{wall.name}' is {deep} layers thick, the kernel reaches "
+                f"wall '{wall.name}' is {thick} thick, the kernel reaches "
                 f"{scene.wall_layers}: fluid on its two sides would feel each other. Thicken it, "
                 "or refine spacing"
             )

@@ -39,7 +39,7 @@ def wedge() -> list[list[float]]:
 SHAPES = {"toe of 30°": toe, "step of 270°": step, "wedge of 15°": wedge}
 
 
-def scene(corners: list[list[float]], spacing: float) -> kolk.Scene:
+def scene(corners: list[list[float]], spacing: float, packed: bool) -> kolk.Scene:
     """Water at rest that fills the shape; walls all around, and above where it ends."""
     water: dict[str, Any] = {"polygon": {"points": corners}}
     # A whole number of spacings beyond: walls and water on one lattice.
@@ -57,7 +57,14 @@ def scene(corners: list[list[float]], spacing: float) -> kolk.Scene:
         spacing=spacing,
         gravity=[0.0, -GRAVITY],
         until=10.0,
-        fluid=[{"name": "water", "shape": water, "viscosity": {"artificial": 0.02}}],
+        fluid=[
+            {
+                "name": "water",
+                "shape": water,
+                "viscosity": {"artificial": 0.02},
+                "arrangement": "packed" if packed else "lattice",
+            }
+        ],
         wall=[
             {
                 "name": "tank",
@@ -81,7 +88,8 @@ def level(sim: kolk.Simulation) -> float:
 def run(variant: str) -> Result:
     kind, _, resolution = variant.partition(", H/Δp = ")
     spacing = DEPTH / float(resolution)
-    sim = simulation(scene(SHAPES[kind](), spacing))
+    shape, _, packed = kind.partition(", ")
+    sim = simulation(scene(SHAPES[shape](), spacing, bool(packed)))
     time = math.sqrt(DEPTH / GRAVITY)
     watch = Watch(sim).run((20.0 if float(resolution) > 30 else 8.0) * time, 10)
     # Along x = 0, the left wall or the wedge's middle, away from any corner. The level
@@ -106,11 +114,21 @@ def run(variant: str) -> Result:
     )
 
 
+KINDS = (*SHAPES, "wedge of 15°, packed")
+
 case = Case(
     title="Acute, re-entrant and wedge-shaped corners",
     setup="Water at rest over a toe of 30°, a step with a corner of 270°, in a wedge of 15°.",
     failure="particles stuck in the corner, leaks",
     run=run,
-    short=tuple(f"{kind}, H/Δp = 20" for kind in SHAPES),
-    full=tuple(f"{kind}, H/Δp = 50" for kind in SHAPES),
+    short=tuple(f"{kind}, H/Δp = 20" for kind in KINDS),
+    full=tuple(f"{kind}, H/Δp = 50" for kind in KINDS),
+    remarks="""A lattice does not fit a wedge of 15°: particles of wall and water start nearer than
+half a spacing to each other and fly apart, and the water swells. `kolk check` counts them
+beforehand and names the remedy, `arrangement = "packed"`; the guard goes back twice and ends in a
+sound state that is not the right one. Tried with the lattice at H/Δp = 20, 8 √(H/g), error of the
+pressure / ρgH: default 15 %, `dynamic` walls 4.1 %, `modified-dynamic` 8.8 %, `semi-analytical`
+45 %, `penalty` 6.3 %, Courant number 0.2 9.7 %, no shifting 1.6 % (but speeds of 0.9 of the
+limit); `mirror` is for right angles. Packed: default 0.17 %, `dynamic` 0.21 %, `modified-dynamic`
+0.28 %, `semi-analytical` 3.3 %, `penalty` 5.1 %.""",
 )

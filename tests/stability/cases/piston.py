@@ -6,6 +6,8 @@ import numpy as np
 from scipy.optimize import brentq
 
 import kolk
+from kolk.errors import InstabilityError
+from kolk.output.stability import leaks
 
 from ..suite import Case, Figure, Result
 from ..watching import Watch, simulation
@@ -42,7 +44,8 @@ def scene(speed: float, across: int) -> kolk.Scene:
                 "name": "water",
                 "shape": {"box": {"from": [0.0, 0.0], "to": [LENGTH, width]}},
                 "sound_speed": SOUND,
-                "viscosity": {"artificial": 0.3},
+                # Monaghan's (1992) for shocks.
+                "viscosity": {"artificial": 1.0, "beta": 2.0},
             }
         ],
         wall=[
@@ -65,6 +68,8 @@ def run(variant: str) -> Result:
     speed = share * SOUND
     pressure, density, front = shock(speed)
     sim = simulation(scene(speed, int(across)))
+    if density > 1.5 * DENSITY:
+        return beyond(sim, variant, density)
     regular = 0.5 * sim.scene.smoothing_length / SOUND
     time = 0.5 * LENGTH / front
     watch = Watch(sim).run(time, 10)
@@ -82,11 +87,40 @@ def run(variant: str) -> Result:
     )
 
 
+def beyond(sim: kolk.Simulation, variant: str, density: float) -> Result:
+    """A shock that takes the fluid out of the range of a weakly compressible one: to be refused."""
+    told, named = 0.0, 0.0
+    try:
+        sim.advance(0.5 * LENGTH / SOUND)
+    except InstabilityError as error:
+        told = float(error.quantity == "density" and (error.value or 0.0) > 1.5 * DENSITY)
+        named = float("sound_speed" in str(error))
+    columns = [v for v in sim.state().values() if isinstance(v, np.ndarray) and v.dtype.kind == "f"]
+    return Watch(sim).result(
+        variant,
+        Figure("density behind the shock", density / DENSITY, least=1.5, unit="ρ0"),
+        Figure("stopped at a density above 1.5 ρ0", told, least=1),
+        Figure("told what to change", named, least=1),
+        Figure("leaks", leaks(sim), most=0),
+        Figure(
+            "numbers left that are none", sum(int((~np.isfinite(v)).sum()) for v in columns), most=0
+        ),
+    )
+
+
 case = Case(
     title="Piston driven into still fluid",
     setup="A closed tube whose end moves at 0.3 c0 and at 0.9 c0 from the first moment.",
     failure="penetration, numbers that are none",
     run=run,
-    short=("0.3 c0, L/Δp = 60",),
-    full=("0.3 c0, L/Δp = 200", "0.9 c0, L/Δp = 200"),
+    short=("0.3 c0, L/Δp = 400", "0.9 c0, L/Δp = 200"),
+    full=("0.3 c0, L/Δp = 200", "0.3 c0, L/Δp = 400", "0.9 c0, L/Δp = 200"),
+    remarks="""The shock's pressure converges to Hugoniot's: halfway between piston and front 2.9 %
+too high at L/Δp = 200 and 0.6 % at 400. With α = 0.3, β = 0 it rings behind the front: 22 % off at
+60, 5.8 % at 200, 2.4 % at 400. Also tried at 200: no shifting -0.6 % (shifting is what packs the
+particles behind the front), `dynamic` walls 0.3 %, no diffusion of density 1.8 %; with α = 0.3 a
+Courant number of 0.1 changes nothing (6.1 %), EDAC 7.1 %. At 0.9 c0 Tait's equation asks for 1.509
+times the density at rest, beyond what a weakly compressible fluid may have: the guard stops there,
+names particle, density and cause, and asks for a higher speed of sound. Without the guard that
+goes back, the run ends at the same density.""",
 )
