@@ -22,7 +22,7 @@ from .words import percent
 SHARE_OF_SURVEY = 0.05
 """Share of a budget for a pilot of the whole scene."""
 
-SHARE_OF_PILOT = 0.07
+SHARE_OF_PILOT = 0.1
 """Share of a budget for a pilot at the spacing that is likely."""
 
 SHORTEST = 0.5
@@ -40,7 +40,7 @@ CONTRADICTORY = 2.0
 MOST_PILOTS = 3
 """Pilots at a likely spacing at most."""
 
-SHARE_OF_PILOTS = 0.25
+SHARE_OF_PILOTS = 0.3
 """Share of a budget after which no further pilot is flown."""
 
 SNAPPED = 0.92
@@ -99,6 +99,7 @@ def for_budget(scene: Scene, budget: float, quantity: str | None, limits: Limits
         reasons=tuple(reasons),
         study=study,
         variant=variant.label,
+        steps=found.steps.value,
         begun=begun,
     )
 

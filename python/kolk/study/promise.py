@@ -59,6 +59,8 @@ class Promise:
     reasons: tuple[str, ...]
     study: Study | None = field(default=None, repr=False)
     variant: str = DEFAULT
+    steps: float = math.nan
+    """Expected; NaN where nothing was piloted."""
     begun: float = field(default_factory=clock.perf_counter)
     """When the command began, by the clock of `time.perf_counter`."""
 
@@ -144,6 +146,13 @@ def outcome(promise: Promise, run: Run) -> list[str]:
         f"Estimated: {duration(promise.wall.value)} ({duration(promise.wall.low)} to "
         f"{duration(promise.wall.high)}). Found: {duration(took)}, {inside}."
     )
+    if inside != "as estimated" and math.isfinite(promise.steps):
+        steps = int(run.summary["steps"]["total"])
+        pace = took / steps * promise.steps / promise.wall.value
+        found.append(
+            f"Steps: {steps:,}, {promise.steps:,.0f} were expected; the machine took {pace:.2f} "
+            "times as long for each as in the pilots."
+        )
     if promise.budget is not None:
         used = clock.perf_counter() - promise.begun - pictures
         found.append(
