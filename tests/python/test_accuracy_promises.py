@@ -250,7 +250,7 @@ def test_the_profile_carries_the_cost_of_a_step_over_to_where_no_pilot_has_been(
     assert blind < 0.8 * taken(scene, 0.01), "the start tells as much as the whole"
 
 
-def test_pilots_that_contradict_each_other_are_told_and_hold_little(machine: list[Pilot]) -> None:
+def test_a_pilot_that_something_hindered_is_told_and_holds_less(machine: list[Pilot]) -> None:
     scene = tank()
     coarse = estimating.fly(make_job(scene.replace(spacing=0.04), None, 1), 100.0)
     fine = estimating.fly(make_job(scene.replace(spacing=0.01), None, 1), 0.1 * taken(scene, 0.01))
@@ -260,7 +260,7 @@ def test_pilots_that_contradict_each_other_are_told_and_hold_little(machine: lis
         CostModel(scene, coarse, fine),
         CostModel(scene, coarse, Pilot(**{**fine.__dict__, "stations": slow})),
     )
-    assert quiet.contradiction < 1.0 and busy.contradiction > 2.0
+    assert quiet.hindrance < 1.0 and busy.hindrance > 2.0
     ratio = busy.at(0.01).parts["steps"] / quiet.at(0.01).parts["steps"]
     assert 1.2 < ratio < 1.9, "neither ignored nor believed alone"
 

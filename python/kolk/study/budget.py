@@ -34,8 +34,8 @@ LONGEST = 60.0
 NEAR = 0.2
 """Logarithm of a ratio of spacings within which another pilot would tell nothing new."""
 
-CONTRADICTORY = 2.0
-"""Standard deviations between two pilots beyond which a third is flown."""
+HINDERED = 2.0
+"""Standard deviations by which a pilot is too slow beyond which it is flown again."""
 
 MOST_PILOTS = 3
 """Pilots at a likely spacing at most."""
@@ -109,7 +109,7 @@ def _piloted(base: Scene, budget: float, precision: Precision | None, limits: Li
 
     First the whole scene, coarse: how its steps change on the way. Then the first seconds at the
     spacing that this leads to: what a step costs there; and again where that leads far away, or
-    where the two contradict each other.
+    where something else on the machine got in its way.
     """
     whole = survey(
         base,
@@ -121,14 +121,13 @@ def _piloted(base: Scene, budget: float, precision: Precision | None, limits: Li
     seconds = min(max(SHORTEST, SHARE_OF_PILOT * budget), LONGEST)
     for _ in range(MOST_PILOTS):
         spacing = _spacing_within(model, USED * (limits.left - seconds))
-        settled = abs(math.log(spacing / model.fine.spacing)) < NEAR
-        if settled and model.contradiction < CONTRADICTORY:
-            break
         there = affordable(base.replace(spacing=spacing))
+        settled = abs(math.log(there.spacing / model.fine.spacing)) < NEAR
+        if settled and model.hindrance < HINDERED:
+            break
         again = CostModel(base, whole, fly(make_job(there, precision, limits.threads), seconds))
-        # Pilots that contradict each other saw the machine at different speeds: of two at about
-        # the same spacing the one that agrees with that of the whole scene.
-        if not settled or again.contradiction < model.contradiction:
+        # Of two at about the same spacing the one that was less hindered.
+        if not settled or again.hindrance < model.hindrance:
             model = again
         if limits.left < (1.0 - SHARE_OF_PILOTS) * budget:
             break

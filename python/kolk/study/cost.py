@@ -214,11 +214,11 @@ class CostModel:
         return math.log(_work(self._there(self.fine.spacing)) / _work(self._there(there)))
 
     @property
-    def contradiction(self) -> float:
-        """How far from each other both pilots are on the machine's speed, in standard deviations:
-        beyond 2 it was not as fast during the one as during the other."""
+    def hindrance(self) -> float:
+        """By how many standard deviations the fine pilot was slower than the profile leads to:
+        beyond 2 something else had the machine meanwhile."""
         spread = math.hypot(POWER_SPREAD * self._scale, math.sqrt(2.0) * NOISE)
-        return abs(self._seen_slower - POWER_OF_WORK * self._scale) / spread
+        return (self._seen_slower - POWER_OF_WORK * self._scale) / spread
 
     @cached_property
     def _slower(self) -> float:
