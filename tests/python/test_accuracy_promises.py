@@ -265,24 +265,38 @@ def test_a_pilot_that_something_hindered_is_told_and_holds_less(machine: list[Pi
     assert 1.2 < ratio < 1.9, "neither ignored nor believed alone"
 
 
-def test_a_pilot_that_the_machine_disturbed_is_flown_again(
-    machine: list[Pilot], monkeypatch: pytest.MonkeyPatch
-) -> None:
+@pytest.fixture
+def disturbed(machine: list[Pilot], monkeypatch: pytest.MonkeyPatch) -> list[Pilot]:
+    """The same, but something else has the machine during the first flight where the run will be;
+    the flights there."""
     undisturbed, flights = budgeting.fly, []
 
-    def disturbed(job: Any, seconds: float) -> Pilot:
+    def flying(job: Any, seconds: float) -> Pilot:
         found = undisturbed(job, seconds)
-        flights.append(found)
-        if len(flights) > 1:
+        if found.whole:
             return found
-        slow = [[t, n, 2.5 * s, p] for t, n, s, p in found.stations]
-        return Pilot(**{**found.__dict__, "stations": slow})
+        flights.append(found)
+        slow = 2.5 if len(flights) == 1 else 1.0
+        stations = [[t, n, slow * s, p] for t, n, s, p in found.stations]
+        return Pilot(**{**found.__dict__, "stations": stations})
 
-    monkeypatch.setattr(budgeting, "fly", disturbed)
+    monkeypatch.setattr(budgeting, "fly", flying)
+    monkeypatch.setattr(estimating, "fly", flying)
+    return flights
+
+
+def test_a_budget_flies_a_disturbed_pilot_again(disturbed: list[Pilot]) -> None:
     scene = tank()
     found = choose(scene, budget=200.0, quiet=True)
-    assert len(flights) > 1
+    assert len(disturbed) > 1
     assert 0.85 * 200.0 <= taken(scene, found.scene.spacing) <= 200.0
+
+
+def test_an_estimate_flies_a_disturbed_pilot_again(disturbed: list[Pilot]) -> None:
+    scene = tank().replace({"spacing": 0.01})
+    found = estimate(scene, threads=1, seconds=0.2 * taken(scene, 0.01))
+    assert len(disturbed) == 2
+    assert found.parts["steps"] == pytest.approx(taken(scene, 0.01), rel=0.1)
 
 
 def test_too_small_a_budget_is_refused_with_what_would_do(machine: list[Pilot]) -> None:

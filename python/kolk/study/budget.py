@@ -10,7 +10,7 @@ from kolk.scene import Scene
 from kolk.simulation import Precision
 
 from .cost import CostModel
-from .estimate import affordable, survey
+from .estimate import HINDERED, affordable, survey
 from .job import make_job
 from .known import study_of
 from .ladder import DEFAULT, Variant, fits, snapped
@@ -33,9 +33,6 @@ LONGEST = 60.0
 
 NEAR = 0.2
 """Logarithm of a ratio of spacings within which another pilot would tell nothing new."""
-
-HINDERED = 2.0
-"""Standard deviations by which a pilot is too slow beyond which it is flown again."""
 
 MOST_PILOTS = 3
 """Pilots at a likely spacing at most."""

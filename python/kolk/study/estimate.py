@@ -31,6 +31,9 @@ PATIENCE = 2.0
 WORTH = 0.5
 """Share of its seconds from which a pilot of the whole scene need not be flown again, finer."""
 
+HINDERED = 2.0
+"""Standard deviations by which a pilot is too slow beyond which it is flown again."""
+
 COARSE = 600
 """Particles that the coarse pilot has at least, where the scene has so many at all."""
 
@@ -47,7 +50,8 @@ def estimate(
 ) -> Estimate:
     """Particles, memory, steps and wall time of a run, and its error where a study exists.
 
-    Takes two pilot runs of at most `seconds` of steps each. Raises `SceneError` for a scene that
+    Takes two pilot runs of about `seconds` of steps each, and one more where something else on the
+    machine got in the way of the second. Raises `SceneError` for a scene that
     cannot run, `RunError` where a pilot fails.
     """
     if isinstance(scene, (str, Path)):
@@ -66,16 +70,21 @@ def calibrate(
     precision: Precision | None = None,
     threads: int = 0,
     seconds: float = SECONDS,
-    coarse: Pilot | None = None,
 ) -> CostModel:
-    """The cost model of a scene around its spacing. coarse: a pilot that is there already."""
+    """The cost model of a scene around its spacing."""
     wanted = affordable(scene)
-    fine = fly(make_job(wanted, precision, threads), seconds)
-    if coarse is None and not fine.whole:
-        coarse = survey(
-            wanted, precision=precision, threads=threads, seconds=seconds, finest=wanted.spacing
-        )
-    return CostModel(scene, coarse or fine, fine)
+    job = make_job(wanted, precision, threads)
+    fine = fly(job, seconds)
+    if fine.whole:
+        return CostModel(scene, fine, fine)
+    coarse = survey(
+        wanted, precision=precision, threads=threads, seconds=seconds, finest=wanted.spacing
+    )
+    model = CostModel(scene, coarse, fine)
+    if model.hindrance < HINDERED:
+        return model
+    again = CostModel(scene, coarse, fly(job, seconds))
+    return min(model, again, key=lambda found: found.hindrance)
 
 
 def survey(
