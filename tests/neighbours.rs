@@ -85,6 +85,15 @@ fn periodic_axes_join_their_ends() {
 }
 
 #[test]
+fn points_a_million_billion_periods_away_are_where_they_are_in_the_period() {
+    // Found by fuzzing: cell and distance were rounded to different places.
+    let x = [[2_251_799_280_436_250.0], [0.0], [-3e15], [0.5], [1e300]];
+    let found = same(&x, 0.125, [Some([0.0, 1.0])]);
+    assert_eq!(found.row(1), [0, 2, 4]);
+    assert!(found.row(3).is_empty());
+}
+
+#[test]
 fn no_points_one_point_and_points_that_are_not_numbers() {
     assert_eq!(same::<2>(&[], 1.0, [None; 2]).offsets, [0]);
     assert_eq!(same(&[[1.0, 2.0]], 1.0, [None; 2]).offsets, [0, 0]);

@@ -109,6 +109,7 @@ impl<const D: usize> PointGrid<D> {
             position.len()
         );
         let axes = lay_axes(position, radius, periodic);
+        let position: Vec<[f64; D]> = position.par_iter().map(|x| wrapped(&axes, x)).collect();
         let cells = axes
             .iter()
             .map(|axis| axis.count as usize)
@@ -147,9 +148,10 @@ impl<const D: usize> PointGrid<D> {
     /// periodic axes the difference is to the nearest image.
     #[inline]
     pub fn for_each_near(&self, x: &[f64; D], mut visit: impl FnMut(usize, [f64; D], f64)) {
-        self.for_each_run(x, |places| {
+        let x = wrapped(&self.axes, x);
+        self.for_each_run(&x, |places| {
             for place in places {
-                let (d, squared) = separation(&self.axes, x, &self.sorted[place]);
+                let (d, squared) = separation(&self.axes, &x, &self.sorted[place]);
                 if squared <= self.radius_squared {
                     visit(self.order[place] as usize, d, squared);
                 }
@@ -240,6 +242,16 @@ impl Axis {
         }
     }
 
+    /// `x` in the period, by a remainder without error; as it is where it is in it already.
+    #[inline]
+    fn wrapped(&self, x: f64) -> f64 {
+        let from = x - self.origin;
+        if self.period == 0.0 || (0.0..=self.period).contains(&from) {
+            return x;
+        }
+        self.origin + from.rem_euclid(self.period)
+    }
+
     #[inline]
     fn cell(&self, x: f64) -> usize {
         let cell = ((x - self.origin) * self.inverse_edge).floor() as i64;
@@ -291,6 +303,12 @@ fn lay_axes<const D: usize>(
         });
     }
     axes
+}
+
+/// `x` in the periods. Far outside, cell and distance would each be rounded, and to different places.
+#[inline]
+pub(super) fn wrapped<const D: usize>(axes: &[Axis; D], x: &[f64; D]) -> [f64; D] {
+    std::array::from_fn(|a| axes[a].wrapped(x[a]))
 }
 
 /// `x - y` and its square, to the nearest image on periodic axes.
