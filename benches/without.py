@@ -101,8 +101,9 @@ EFFECTS: dict[str, tuple[Cut, ...]] = {
     ),
     "particle shifting": (
         body(RATES, "rates_with", "let _ = dt; self.run_density_rates(diffusion, ())"),
-        body(RATES, "shift_over", "let _ = dt; None"),
-        Cut(SOLVER, r"if let Some\(shift\) = &self\.fluid\.shift", "}", "{ let _ = shift; }"),
+        body(RATES, "shift_of_a_step", "let _ = dt; None"),
+        body(RATES, "shifts_now", "false"),
+        body(SOLVER, "shift", ""),
     ),
     "moving walls": (
         body(SOLVER, "move_walls", "let _ = time;"),

@@ -73,7 +73,7 @@ fn scenes() -> Vec<(&'static str, Scene)> {
             "periodic 2D",
             periodic_box::<2>(70)
                 .with(diffusion("antuono"))
-                .with(shifting("sun")),
+                .with(json!({"shifting": {"form": "sun", "every": 3}})),
         ),
         (
             "periodic 3D",

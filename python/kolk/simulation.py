@@ -319,7 +319,8 @@ class Simulation:
         """Fluid fields at points: (m, D) positions -> field -> (m,) or (m, D).
 
         fields: "pressure" (Pa, corrected hydrostatically to the point), "velocity", "density", and
-        "fill" (Σ V W, not normalised: about 1 inside, 0.5 at a surface). 0 where no fluid is near.
+        "fill" (Σ V W, not normalised: about 1 inside, 0.5 at a surface), 0 where no fluid is near;
+        and "wall_fill", the same sum over the particles of walls.
         """
         place = np.ascontiguousarray(points, dtype=np.float64)
         return {name: np.asarray(v) for name, v in self._engine.sample(place, list(fields)).items()}

@@ -15,6 +15,9 @@ const PAIRING: f64 = 0.2;
 const SURFACE: f64 = 0.4;
 const INTERIOR: f64 = 0.75;
 
+/// No shift is longer, in smoothing lengths.
+const LONGEST: f64 = 0.2;
+
 /// Rate in units of `U/h` at which density follows the concentration of particles under a free surface, with the largest
 /// speed `U` of the flow: shifts go with the same speed, and fluid at rest is left alone.
 const FOLLOWING: f64 = 0.1;
@@ -98,7 +101,7 @@ impl Shift {
     pub fn lind<const D: usize>(around: &Surroundings, speed: f64, dt: f64) -> Self {
         Shift {
             strength_per_speed: 2.0 * around.h * dt,
-            limit: 0.2 * around.h,
+            limit: LONGEST * around.h,
             ..Self::none::<D>(around, speed)
         }
     }
@@ -114,9 +117,20 @@ impl Shift {
     ) -> Self {
         Shift {
             strength: (sound_speed * dt).powi(2),
-            limit: 0.2 * around.h,
+            limit: LONGEST * around.h,
             pairing: 0.0,
             ..Self::none::<D>(around, speed)
+        }
+    }
+
+    /// What one shift must do where there is only one in so many `steps`. None is longer than `0.2 h`.
+    pub fn for_steps(self, steps: f64, h: f64) -> Self {
+        Shift {
+            strength: self.strength * steps,
+            strength_per_speed: self.strength_per_speed * steps,
+            limit: (self.limit * steps).min(LONGEST * h),
+            following: self.following * steps,
+            ..self
         }
     }
 

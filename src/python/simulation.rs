@@ -325,10 +325,13 @@ impl PySimulation {
                 "pressure" => dict.set_item(&field, PyArray1::from_slice(py, &samples.pressure))?,
                 "density" => dict.set_item(&field, PyArray1::from_slice(py, &samples.density))?,
                 "fill" => dict.set_item(&field, PyArray1::from_slice(py, &samples.fill))?,
+                "wall_fill" => {
+                    dict.set_item(&field, PyArray1::from_slice(py, &samples.wall_fill))?
+                }
                 "velocity" => dict.set_item(&field, self.vectors(py, samples.velocity.clone())?)?,
                 other => {
                     return Err(KolkError::new_err(format!(
-                        "fields: found {other:?}, allowed are pressure, velocity, density and fill"
+                        "fields: found {other:?}, allowed are pressure, velocity, density, fill and wall_fill"
                     )));
                 }
             }

@@ -124,9 +124,10 @@ impl<R: Real, const D: usize> Solver<R, D> {
             .collect()
     }
 
-    /// Begins the audit of a step, if it is its turn.
+    /// Begins the audit of a step, if it is its turn: only a step with a shift shows what shifting takes.
     pub(super) fn begin_audit(&mut self) {
-        if self.step >= self.budget.next {
+        let complete = self.config.shifting.is_none() || self.shifts_now();
+        if complete && self.step >= self.budget.next {
             self.budget.next = self.step;
             self.budget.audit = Some([0.0; ENTRIES]);
             self.budget.listens = true;
@@ -197,7 +198,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
     /// elsewhere is summed over pairs.
     fn power_of_following(&self) -> f64 {
         let fluid = &self.fluid;
-        let shift = self.shift_over(0.0).filter(|s| s.keeps_a_surface());
+        let shift = self.shift_of_a_step(0.0).filter(|s| s.keeps_a_surface());
         let Some(shift) = shift else {
             return 0.0;
         };
@@ -242,7 +243,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     self.motion.gravity,
                 )),
             }),
-            following: self.shift_over(0.0).filter(|s| !s.keeps_a_surface()),
+            following: self.shift_of_a_step(0.0).filter(|s| !s.keeps_a_surface()),
             damper: self.motion.bulk_viscosity,
             core: (!matches!(laminar, Some(Laminar::Morris(_))))
                 .then(|| Contact::fluid(c.spacing, D, c0, rho)),
@@ -290,6 +291,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             let along: f64 = (0..D).map(|a| gravity[a] * shift[a][i].to_f64()).sum();
             [mass[i].to_f64() * along]
         });
-        (taken - self.energy_transported()) / dt
+        let steps = self.config.shifting.map_or(1, |s| s.every.get());
+        (taken - self.energy_transported()) / (dt * f64::from(steps))
     }
 }

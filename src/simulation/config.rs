@@ -7,6 +7,7 @@ use crate::prescribed::{MotionConfig, SignalConfig};
 use crate::step::Integrator;
 use crate::walls::{Slip, WallMethod};
 use serde::{Deserialize, Serialize};
+use std::num::NonZeroU32;
 
 /// The resolved description of a simulation; the particles come beside it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -182,10 +183,17 @@ pub struct ShiftingConfig {
     /// Whether there is a free surface to keep.
     #[serde(default = "yes")]
     pub free_surface: bool,
+    /// Steps from one shift to the next, which moves particles as far as all of them would have.
+    #[serde(default = "one")]
+    pub every: NonZeroU32,
 }
 
 fn yes() -> bool {
     true
+}
+
+fn one() -> NonZeroU32 {
+    NonZeroU32::MIN
 }
 
 /// What keeps fluid under tension from clumping.

@@ -43,8 +43,21 @@ impl<R: Real, const D: usize> Solver<R, D> {
         }
     }
 
-    /// Shifting over the step `dt`, if there is any.
+    /// Whether particles are shifted at the end of the present step.
+    pub(super) fn shifts_now(&self) -> bool {
+        let every = self.config.shifting.map(|s| u64::from(s.every.get()));
+        every.is_some_and(|every| (self.step + 1).is_multiple_of(every))
+    }
+
+    /// The shift of this step of `dt`, for all steps since the last one, if it is its turn.
     pub(super) fn shift_over(&self, dt: f64) -> Option<Shift> {
+        let config = self.config.shifting.filter(|_| self.shifts_now())?;
+        let shift = self.shift_of_a_step(dt)?;
+        Some(shift.for_steps(f64::from(config.every.get()), self.config.smoothing_length))
+    }
+
+    /// Shifting over a step of `dt` as if there were a shift in every one, if there is any.
+    pub(super) fn shift_of_a_step(&self, dt: f64) -> Option<Shift> {
         let speed = self.state.speed;
         self.shifting.map(|(form, around)| match form {
             ShiftingForm::Sun | ShiftingForm::Consistent => Shift::sun::<D>(&around, speed, dt),

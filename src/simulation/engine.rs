@@ -58,8 +58,10 @@ pub struct Samples {
     pub density: Vec<f64>,
     /// Velocities in m/s.
     pub velocity: Vec<f64>,
-    /// `Σ V W`.
+    /// `Σ V W` over the fluid.
     pub fill: Vec<f64>,
+    /// `Σ V W` over the particles of walls.
+    pub wall_fill: Vec<f64>,
 }
 
 /// An effect as a scene has it.
@@ -156,6 +158,7 @@ impl<R: Real, const D: usize> Engine for Solver<R, D> {
             density: samples.iter().map(|s| s.density).collect(),
             velocity: samples.iter().flat_map(|s| s.velocity).collect(),
             fill: samples.iter().map(|s| s.fill).collect(),
+            wall_fill: samples.iter().map(|s| s.wall_fill).collect(),
         }
     }
     fn force_on(&self, ids: &std::ops::Range<u32>) -> (Vec<f64>, Vec<f64>) {

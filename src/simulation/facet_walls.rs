@@ -183,11 +183,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 facet.divide(self.config.spacing, &mut elements);
             }
         }
+        let order = self.order();
         let parts: Vec<[f64; 6]> = elements
             .par_iter()
             .map(|facet| {
                 let x = facet.centre();
-                let p = self.sample_point(&x).pressure * facet.extent();
+                let p = self.sample_point(&x, order.as_ref()).pressure * facet.extent();
                 let f = facet.normal.map(|n| -p * n);
                 let mut part = [0.0; 6];
                 part[..D].copy_from_slice(&f);

@@ -2,6 +2,7 @@
 
 use super::solver::Solver;
 use crate::kernel::KernelName;
+use crate::neighbours::{Cells, Grid, Sorter};
 use crate::simd::Real;
 use rayon::prelude::*;
 
@@ -16,6 +17,14 @@ pub struct Sample<const D: usize> {
     pub velocity: [f64; D],
     /// `Σ V W`, the share of the support that is filled: about 1 inside, ½ at a surface or a plane wall.
     pub fill: f64,
+    /// The same of the particles of walls.
+    pub wall_fill: f64,
+}
+
+/// Particles by cell that are not yet sorted into cells: before the first step.
+pub(super) struct Order {
+    cells: Cells,
+    sorter: Sorter,
 }
 
 impl<R: Real, const D: usize> Solver<R, D> {
@@ -24,10 +33,31 @@ impl<R: Real, const D: usize> Solver<R, D> {
     /// stand on a wall: the fluid at rest is read exactly. Where neither fluid nor wall fills the support, the rest is
     /// air without pressure: a sensor that a jet has only begun to wet reads the mean over its neighbourhood.
     pub fn sample(&self, points: &[[f64; D]]) -> Vec<Sample<D>> {
-        points.par_iter().map(|x| self.sample_point(x)).collect()
+        let order = self.order();
+        let one = |x| self.sample_point(x, order.as_ref());
+        points.par_iter().map(one).collect()
     }
 
-    pub(super) fn sample_point(&self, x: &[f64; D]) -> Sample<D> {
+    /// The particles by cell, unless they are sorted.
+    pub(super) fn order(&self) -> Option<Order> {
+        if self.primed {
+            return None;
+        }
+        let (n, parts) = (self.fluid.len(), Grid::<D>::PARTS);
+        let mut order = Order {
+            cells: Cells::new(self.grid.count(), parts),
+            sorter: Sorter::new(n),
+        };
+        order.sorter.sort(&mut order.cells, |i| {
+            let mut x = self.fluid.at(i);
+            self.grid.wrap(&mut x);
+            self.grid.bin(&x)
+        });
+        Some(order)
+    }
+
+    /// Fields at `x`; `order` is that of [`Self::order`].
+    pub(super) fn sample_point(&self, x: &[f64; D], order: Option<&Order>) -> Sample<D> {
         use crate::eos::EquationOfState;
         let (fluid, kernel, h) = (&self.fluid, self.kernel, self.config.smoothing_length);
         let reach2 = (h * kernel.support()).powi(2);
@@ -36,11 +66,11 @@ impl<R: Real, const D: usize> Solver<R, D> {
             density: 0.0,
             velocity: [0.0; D],
             fill: 0.0,
+            wall_fill: 0.0,
         };
         let mut at = *x;
         self.grid.wrap(&mut at);
-        let mut add = |j: usize, shift: &[f64; D]| {
-            let d: [f64; D] = std::array::from_fn(|a| at[a] - fluid.position[a][j] - shift[a]);
+        let mut add = |j: usize, d: [f64; D]| {
             let r2: f64 = d.iter().map(|d| d * d).sum();
             if r2 >= reach2 {
                 return;
@@ -56,39 +86,43 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 sum.velocity[a] += weight * fluid.velocity[a][j];
             }
         };
-        if self.primed {
-            let cell = self.grid.bin(&at) as usize / crate::neighbours::Grid::<D>::PARTS;
-            for run in self.grid.around(cell).iter() {
-                for j in fluid.cells.particles(run.first, run.end) {
-                    add(j, &run.shift);
+        let cell = self.grid.bin(&at) as usize / Grid::<D>::PARTS;
+        for run in self.grid.around(cell).iter() {
+            match order {
+                None => {
+                    for j in fluid.cells.particles(run.first, run.end) {
+                        add(
+                            j,
+                            std::array::from_fn(|a| at[a] - fluid.position[a][j] - run.shift[a]),
+                        );
+                    }
+                }
+                Some(Order { cells, sorter }) => {
+                    for k in cells.particles(run.first, run.end) {
+                        let j = sorter.order[k] as usize;
+                        add(j, self.grid.separation(&at, &fluid.at(j)));
+                    }
                 }
             }
-        } else {
-            for j in 0..fluid.len() {
-                let d = self.grid.separation(&at, &fluid.at(j));
-                let shift = std::array::from_fn(|a| at[a] - fluid.position[a][j] - d[a]);
-                add(j, &shift);
-            }
         }
+        sum.wall_fill = self.wall_fill(&at, cell);
         if sum.fill > 1e-12 {
             // Particles in disorder fill a support to within some per cent: less than 0.9 means air.
-            let free = 1.0 - self.wall_fill(&at);
-            sum.pressure /= sum.fill.max(0.9 * free);
+            sum.pressure /= sum.fill.max(0.9 * (1.0 - sum.wall_fill));
             sum.density /= sum.fill;
             sum.velocity = sum.velocity.map(|v| v / sum.fill);
         }
         sum
     }
 
-    /// The share of the support at a point that walls fill.
-    fn wall_fill(&self, at: &[f64; D]) -> f64 {
+    /// The share of the support at a point in `cell` that walls fill.
+    fn wall_fill(&self, at: &[f64; D], cell: usize) -> f64 {
         let Some(wall) = &self.wall else { return 0.0 };
         let (h, volume) = (
             self.config.smoothing_length,
             1.0 / self.config.reference_density,
         );
         let reach2 = (h * self.kernel.support()).powi(2);
-        let cell = self.grid.bin(at) as usize / crate::neighbours::Grid::<D>::PARTS;
         let mut fill = 0.0;
         for run in self.grid.around(cell).iter() {
             for j in wall.cells.particles(run.first, run.end) {

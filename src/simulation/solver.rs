@@ -274,22 +274,26 @@ impl<R: Real, const D: usize> Solver<R, D> {
             Integrator::RungeKutta2 => runge_kutta_2(self, dt)?,
             Integrator::RungeKutta4 => runge_kutta_4(self, dt)?,
         }
-        self.sum_transport();
-        let free = self.is_free();
-        if let Some(shift) = &self.fluid.shift {
-            let longest = if free {
-                apply_shift_of_free_fluid(&mut self.fluid)
-            } else {
-                apply_shift(&mut self.fluid.position, shift)
-            };
-            self.apply_transport();
-            self.state.finite &= longest.is_finite();
-            self.travelled += longest;
-            self.timers.book(Phase::Shift);
+        if self.shifts_now() {
+            self.shift();
         }
         self.end_audit(dt);
         self.keep_inside(self.time + dt);
         self.check(dt)
+    }
+
+    /// Moves particles by their shift.
+    fn shift(&mut self) {
+        self.sum_transport();
+        let longest = match &self.fluid.shift {
+            None => return,
+            Some(_) if self.is_free() => apply_shift_of_free_fluid(&mut self.fluid),
+            Some(shift) => apply_shift(&mut self.fluid.position, shift),
+        };
+        self.apply_transport();
+        self.state.finite &= longest.is_finite();
+        self.travelled += longest;
+        self.timers.book(Phase::Shift);
     }
 
     /// The default: sort → drift → walls → forces → kick and drift → continuity → drift of density.

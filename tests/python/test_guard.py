@@ -166,6 +166,27 @@ def test_leaks_and_voids_are_counted() -> None:
     assert voids(sim) >= 1
 
 
+@pytest.mark.parametrize("steps", [0, 40])
+def test_fill_is_the_kernel_sum(steps: int) -> None:
+    # Before the first step particles are not sorted into cells yet.
+    scene = tank().replace({"fluid.water.viscosity.artificial": 0.02, "fluid.water.jitter": 0.2})
+    sim = Simulation(scene, precision="f64", threads=1)
+    if steps:
+        sim.advance_to(1e9, steps)
+    points = np.random.default_rng(7).uniform([-0.05, -0.05], [0.6, 0.4], (60, 2))
+    found = sim.sample(points, ["fill", "wall_fill"])
+    kernel = kolk.kernel(scene.kernel, 2)
+    wanted = {"fluid": np.zeros(len(points)), "wall": np.zeros(len(points))}
+    for body in sim.bodies.values():
+        volume = body.mass / (body.density if body.kind == "fluid" else 1000.0)
+        apart = np.linalg.norm(points[:, None] - body.position[None], axis=2)
+        weight = kernel.value(apart.ravel(), scene.smoothing_length).reshape(apart.shape)
+        wanted[body.kind] += weight @ volume
+    np.testing.assert_allclose(found["fill"], wanted["fluid"], rtol=1e-12, atol=1e-13)
+    np.testing.assert_allclose(found["wall_fill"], wanted["wall"], rtol=1e-6, atol=1e-7)
+    assert np.ptp(found["fill"]) > 0.5 and np.ptp(found["wall_fill"]) > 0.2
+
+
 def test_leaks_of_a_wall_that_moves() -> None:
     from kolk.output.stability import leaks
 

@@ -12,7 +12,6 @@ from numpy.typing import NDArray
 from kolk.output.tables import read_columns
 
 if TYPE_CHECKING:
-    from kolk.scene import Scene
     from kolk.scene.shapes import Shape
     from kolk.simulation import Simulation
 
@@ -89,14 +88,6 @@ def voids(simulation: Simulation) -> int:
     d, edge = simulation.dimension, 2.0 * scene.spacing
     bodies = simulation.bodies.values()
     position = np.concatenate([body.position for body in bodies])
-    volume = np.concatenate(
-        [
-            body.mass / body.density
-            if body.kind == "fluid"
-            else np.full(len(body), scene.spacing**d)
-            for body in bodies
-        ]
-    )
     fluid = np.concatenate([np.full(len(body), body.kind == "fluid") for body in bodies])
     middle = np.median(position, axis=0)
     cell = np.floor((position - middle) / edge)
@@ -116,22 +107,8 @@ def voids(simulation: Simulation) -> int:
     if not len(wanted):
         return 0
     index = np.stack([wanted // w % (2 * _FARTHEST) for w in weight], axis=1) - _FARTHEST
-    return int(np.sum(_kernel_sum(scene, (index + 0.5) * edge + middle, position, volume) < VOID))
-
-
-def _kernel_sum(scene: Scene, points: Floats, position: Floats, volume: Floats) -> Floats:
-    """Σ V W (m,) at points (m, D)."""
-    from scipy.spatial import cKDTree
-
-    from kolk import _core
-
-    kernel, h = _core.kernel(scene.kernel, scene.dimension), scene.smoothing_length
-    found = cKDTree(position).query_ball_point(points, scene.support)
-    total = np.zeros(len(points))
-    for k, (point, members) in enumerate(zip(points, found, strict=True)):
-        distance = np.linalg.norm(position[members] - point, axis=1)
-        total[k] = float(np.sum(volume[members] * kernel.value(distance, h)))
-    return total
+    found = simulation.sample((index + 0.5) * edge + middle, ["fill", "wall_fill"])
+    return int(np.sum(found["fill"] + found["wall_fill"] < VOID))
 
 
 def stability_report(

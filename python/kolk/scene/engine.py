@@ -39,7 +39,11 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         tensile = {"form": form_of_remedy, "free_surface": scene.free_surface}
     form_of_shift = automatic.shifting(scene).value
     if form_of_shift != "none":
-        shifting = {"form": form_of_shift, "free_surface": scene.free_surface}
+        shifting = {
+            "form": form_of_shift,
+            "free_surface": scene.free_surface,
+            "every": numerics.shifting_interval,
+        }
     method, suction = automatic.wall(scene), automatic.suction(scene)
     if method is not None and suction is not None:
         wall = {"method": method.value, "slip": scene.wall[0].slip, "suction": suction.value}

@@ -57,7 +57,13 @@ class Scene(Model):
     smoothing_ratio: Annotated[Real, Field(ge=0.8, le=4.0)] | None = Field(
         default=None, description="smoothing length over spacing; 2 in 2D and 1.7 in 3D if absent"
     )
-    kernel: Literal["wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = "wendland-c2"
+    kernel: Literal["auto", "wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = (
+        Field(
+            default="auto",
+            description="smoothing kernel; auto: wendland-c2, but wendland-c4 for Newtonian fluids "
+            "without free surface",
+        )
+    )
     gravity: GravityKey | None = Field(
         default=None, description="m/s^2; a table if it changes with time; leave it out for none"
     )
@@ -78,6 +84,11 @@ class Scene(Model):
         if self.smoothing_ratio is None:
             self.__dict__["smoothing_ratio"] = DEFAULT_SMOOTHING_RATIO[self.dimension]
             self.model_fields_set.discard("smoothing_ratio")
+        if self.kernel == "auto":
+            from .automatic import kernel
+
+            self.__dict__["kernel"] = kernel(self).value
+            self.model_fields_set.discard("kernel")
         check_consistency(self)
         if self.output.every is None:
             # Resolved once, here, so that nothing later has to know the rule.

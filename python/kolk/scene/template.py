@@ -14,7 +14,7 @@ gravity = [0.0, -9.81]             # leave it out and no gravity term exists
 until = 2.0                        # s
 
 # smoothing_ratio = 2.0            # smoothing length over spacing
-# kernel = "wendland-c2"           # or wendland-c4, wendland-c6, cubic, quintic
+# kernel = "auto"                  # or wendland-c2, wendland-c4, wendland-c6, cubic, quintic
 # periodic = { x = [0.0, 1.0] }    # the domain repeats along these axes
 
 # Bodies of fluid. Shapes: box, sphere, disc, cylinder, polygon, union, difference, function:
