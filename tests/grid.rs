@@ -249,3 +249,11 @@ fn positions_that_are_not_numbers_stay_in_the_table_and_disturb_nobody() {
         check(&x, laid, 0.25, periodic);
     }
 }
+
+#[test]
+fn particles_farther_apart_than_numbers_of_cells_go_have_a_grid() {
+    // Found by fuzzing: one cell more than the largest number of cells overflowed.
+    let grid = Grid::<2>::new([0.0, 0.0], [1e300, 1.0], 1e-3, [None; 2], 2);
+    assert!(grid.count() <= 27);
+    assert!((grid.bin(&[1e300, 0.5]) as usize) < grid.count() * Grid::<2>::PARTS);
+}

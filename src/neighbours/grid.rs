@@ -89,8 +89,9 @@ impl<const D: usize> Grid<D> {
                 grid.edge[a] = (to - from) / grid.cells[a] as f64;
                 grid.inverse_edge[a] = 1.0 / grid.edge[a];
             } else {
-                grid.cells[a] =
-                    (((high[a] - low[a]) / reach).floor() as usize + 1).clamp(3, 1 << 20);
+                // A cast saturates: particles may be farther apart than numbers of cells go.
+                let whole = ((high[a] - low[a]) / reach).floor() as usize;
+                grid.cells[a] = whole.saturating_add(1).clamp(3, 1 << 20);
             }
         }
         while grid.count() > budget.max(27) {

@@ -158,6 +158,17 @@ pub(super) fn positive(name: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
     }
 }
 
+/// One length, whose square must be a number, too: neither zero nor infinite.
+pub(super) fn length(name: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
+    let found = positive(name, object)?;
+    if (1e-150..=1e150).contains(&found) {
+        Ok(found)
+    } else {
+        let found = format_args!("{found:e}");
+        Err(wrong(name, found, "a length from 1e-150 to 1e150"))
+    }
+}
+
 /// One number, zero or positive.
 pub(super) fn not_negative(name: &str, object: &Bound<'_, PyAny>) -> PyResult<f64> {
     let found = number(name, object)?;
@@ -287,7 +298,7 @@ impl<'py> Particles<'py> {
         let density = Numbers::read("density", density)?;
         density.one_each(count)?;
         density.each(|rho| rho > 0.0, "positive densities")?;
-        let h = positive("h", h)?;
+        let h = length("h", h)?;
         let kernel = kernel_name("kernel", kernel)?;
         let periods = periods(periodic, dimension, kernel.support() * h)?;
         Ok(Self {

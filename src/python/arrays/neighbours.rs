@@ -42,7 +42,7 @@ pub(super) fn neighbours<'py>(
     periodic: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Rows<'py>> {
     let (position, dimension) = input::positions("position", position)?;
-    let radius = input::positive("radius", radius)?;
+    let radius = input::length("radius", radius)?;
     let periods = input::periods(periodic, dimension, radius)?;
     let x = position.values();
     let found = py.detach(|| {
@@ -83,7 +83,7 @@ pub(super) fn all_pairs<'py>(
     periodic: Option<&Bound<'py, PyAny>>,
 ) -> PyResult<Rows<'py>> {
     let (position, dimension) = input::positions("position", position)?;
-    let radius = input::positive("radius", radius)?;
+    let radius = input::length("radius", radius)?;
     let periods = input::periods(periodic, dimension, radius)?;
     let x = position.values();
     let found = py.detach(|| {
