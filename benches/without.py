@@ -85,6 +85,7 @@ def body(file: str, function: str, instead: str = "") -> Cut:
 EFFECTS: dict[str, tuple[Cut, ...]] = {
     "turbulence": (stage("turbulence"),),
     "Herschel-Bulkley": (stage("herschel_bulkley"),),
+    "surface tension": (stage("surface_tension"),),
     "Riemann dissipation": (
         stage("riemann_viscosity"),
         arm(RATES, "Some((DiffusionForm::Riemann, delta))"),

@@ -43,6 +43,7 @@ fn shiftings() -> Vec<Choice> {
     vec![
         ("none", json!({})),
         ("sun", form("sun", true)),
+        ("gentle", form("gentle", true)),
         ("lind", form("lind", true)),
         ("sun inside", form("sun", false)),
     ]

@@ -59,9 +59,10 @@ fuzz_target!(|input: Input| {
             0 => json!(null),
             k => json!({"form": (["molteni", "antuono", "fourtakas"][k as usize - 1]), "delta": 0.1}),
         },
-        "shifting": match shifting % 3 {
+        "surface_tension": (shifting % 7 == 6).then_some(0.07),
+        "shifting": match shifting % 4 {
             0 => json!(null),
-            k => json!({"form": (["sun", "lind"][k as usize - 1]), "free_surface": true}),
+            k => json!({"form": (["sun", "lind", "gentle"][k as usize - 1]), "free_surface": true}),
         },
         "wall": {"method": (["adami", "dynamic"][walls as usize % 2]), "slip": "no"},
     });

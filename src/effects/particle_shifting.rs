@@ -14,6 +14,8 @@ const PAIRING: f64 = 0.2;
 /// Least eigenvalue of the moment matrix at the free surface and in the interior (Marrone et al. 2010; Sun et al. 2017).
 const SURFACE: f64 = 0.4;
 const INTERIOR: f64 = 0.75;
+/// From one to the other without a transition, for all eigenvalues that differ.
+const AT_ONCE: f64 = 1e30;
 
 /// No shift is longer, in smoothing lengths.
 const LONGEST: f64 = 0.2;
@@ -25,6 +27,12 @@ const FOLLOWING: f64 = 0.1;
 const FOLLOWING_INSIDE: f64 = 0.03;
 /// Least eigenvalue from which a particle is wholly surrounded by others.
 const SURROUNDED: f64 = 0.95;
+
+/// Of the gentle form: its strength over that of Sun et al., and the least eigenvalues from which it begins to shift through
+/// the layers of a surface, and does so wholly.
+const GENTLE: f64 = 0.3;
+const GENTLE_FROM: f64 = 0.9;
+const GENTLE_WHOLLY: f64 = 1.0;
 
 /// Coefficient of `Σ V_j [1 + 0.2 (W_ij/W(Δp))⁴] ∇W_ij` in m²: `½ U Δt H²/(2Δp)`, with the support radius `H`, the largest
 /// speed `U` of the flow, and `m_j/(ρ_i + ρ_j)` taken as half the volume (Sun, Colagrossi, Marrone, Antuono & Zhang 2017,
@@ -79,6 +87,14 @@ pub struct Shift {
     /// Strength of the term against pairing.
     pairing: f64,
     free_surface: bool,
+    /// Least eigenvalue from which a particle is shifted at all.
+    kept: f64,
+    /// From which it is shifted every way, below along the surface only.
+    inside: f64,
+    /// How fast the one becomes the other, per eigenvalue.
+    steepness: f64,
+    /// The largest eigenvalue that matters.
+    enough: f64,
     /// Rate in 1/s at which density follows the concentration.
     following: f64,
     /// Concentration at which it rests.
@@ -93,6 +109,22 @@ impl Shift {
             strength: sun_strength(support, around.spacing, speed, dt),
             limit: 0.5 * speed * dt,
             ..Self::none::<D>(around, speed)
+        }
+    }
+
+    /// As [`Self::sun`] with 0.3 of the strength, and near a surface only along it, by and by less so with the depth. For
+    /// a liquid with surface tension: a shift through the layer in which the tension acts carries mass against it, energy
+    /// of the surface that is taken from nothing; without any, voids open under a surface that is stretched. The pressure
+    /// that the tension gives keeps particles evenly spread, too.
+    pub fn gentle<const D: usize>(around: &Surroundings, speed: f64, dt: f64) -> Self {
+        let sun = Self::sun::<D>(around, speed, dt);
+        Shift {
+            strength: GENTLE * sun.strength,
+            kept: 0.0,
+            inside: GENTLE_WHOLLY,
+            steepness: 1.0 / (GENTLE_WHOLLY - GENTLE_FROM),
+            enough: GENTLE_WHOLLY,
+            ..sun
         }
     }
 
@@ -156,6 +188,10 @@ impl Shift {
             inverse_weight: 1.0 / around.kernel.value(D, around.spacing, around.h),
             pairing: PAIRING,
             free_surface: around.free_surface,
+            kept: SURFACE,
+            inside: INTERIOR,
+            steepness: AT_ONCE,
+            enough: SURROUNDED,
             following: speed / around.h
                 * if around.free_surface {
                     FOLLOWING
@@ -190,9 +226,9 @@ impl Shift {
     #[inline(always)]
     pub fn surroundings<R: Real, const D: usize>(&self, sums: &Sums<R, D>) -> R {
         if self.free_surface {
-            sums.least_moment(SURROUNDED)
+            sums.least_moment(self.enough)
         } else {
-            R::from_f64(SURROUNDED)
+            R::from_f64(self.enough)
         }
     }
 
@@ -207,11 +243,14 @@ impl Shift {
         let zero = R::default();
         let mut shift = sums.gradient.map(|g| -g);
         if self.free_surface {
-            if least < R::from_f64(SURFACE) {
+            if least < R::from_f64(self.kept) {
                 return [zero; D];
             }
-            if least < R::from_f64(INTERIOR) {
+            let inside = R::from_f64(self.inside);
+            if least < inside {
                 // Along the surface only: the gradient of the concentration is its normal.
+                let steepness = R::from_f64(self.steepness);
+                let part = Lanes::min((inside - least) * steepness, R::from_f64(1.0));
                 let normal = sums.vector;
                 let (mut square, mut along) = (zero, zero);
                 for a in 0..D {
@@ -220,7 +259,7 @@ impl Shift {
                 }
                 if square > zero {
                     for a in 0..D {
-                        shift[a] = shift[a] - along / square * normal[a];
+                        shift[a] = shift[a] - along / square * normal[a] * part;
                     }
                 }
             }

@@ -29,11 +29,12 @@ pub(super) fn optional_columns<const D: usize>(config: &Config) -> OptionalColum
     let gradient = config
         .density_diffusion
         .is_some_and(|d| matches!(d.form, DiffusionForm::Antuono | DiffusionForm::Riemann));
-    let surface = config.shifting.is_some_and(|s| s.free_surface);
+    let vector =
+        config.shifting.is_some_and(|s| s.free_surface) || config.tensile_control.is_some();
     OptionalColumns {
         gradient,
         shift: config.shifting.is_some(),
-        sums: match (gradient, surface || config.tensile_control.is_some()) {
+        sums: match (gradient, vector) {
             (_, true) => matrix::<D>() + D,
             (true, false) => matrix::<D>(),
             (false, false) => 0,
@@ -60,6 +61,21 @@ pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm,
         };
         (s.form, around)
     })
+}
+
+/// What keeps fluid particles apart.
+pub(super) fn core<const D: usize>(config: &Config) -> Contact {
+    let of = if config.surface_tension.is_some() {
+        Contact::under_tension
+    } else {
+        Contact::fluid
+    };
+    of(
+        config.spacing,
+        D,
+        config.sound_speed,
+        config.reference_density,
+    )
 }
 
 /// Share of the stability limit (a decay of 1 per step) that a step limited by dissipation uses.
@@ -198,7 +214,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let laminar = c.laminar_viscosity.map(|v| (v.form, v.kinematic));
         // Between walls, where pressure is everywhere and shifting keeps the order, particles need no core. Artificial
         // viscosity is for the inside of a fluid: it has no part in the friction at a wall.
-        let core = Contact::fluid(c.spacing, D, c.sound_speed, rho);
+        let core = core::<D>(c);
         let no_slip = c.wall.is_some_and(|w| w.slip == Slip::No);
         match (artificial, laminar) {
             (None, None) => self.forces_with(core, ()),

@@ -10,7 +10,7 @@ use super::config::{DiffusionForm, ViscosityForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
-    Antuono, ArtificialViscosity, Contact, Diffusion, Dissipation, Fourtakas, Laminar, Molteni,
+    Antuono, ArtificialViscosity, Diffusion, Dissipation, Fourtakas, Laminar, Molteni,
     MonaghanGingold, Morris, POWERS, RiemannDiffusion, WALL_POWER,
 };
 use crate::eos::EquationOfState;
@@ -246,7 +246,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             following: self.shift_of_a_step(0.0).filter(|s| !s.keeps_a_surface()),
             damper: self.motion.bulk_viscosity,
             core: (!matches!(laminar, Some(Laminar::Morris(_))))
-                .then(|| Contact::fluid(c.spacing, D, c0, rho)),
+                .then(|| super::assembly::core::<D>(c)),
             laminar,
         }
     }

@@ -6,16 +6,16 @@ use super::timers::Phase;
 use crate::effects::{
     ACOUSTIC_DAMPER, ARTIFICIAL_STRESS, ARTIFICIAL_VISCOSITY, Added, Around, ArtificialStress,
     CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, PRESSURE, PairTerm,
-    RIEMANN_VISCOSITY, Rheology, RiemannViscosity, Smagorinsky, Stage, TENSILE_CONTROL,
-    TensileControl, TensileStage, VariableViscosity, density_diffusion, fastest_decay,
-    particle_shifting,
+    RIEMANN_VISCOSITY, Rheology, RiemannViscosity, SURFACE_TENSION, Smagorinsky, Stage,
+    SurfaceTension, TENSILE_CONTROL, TensileControl, TensileStage, VariableViscosity,
+    density_diffusion, fastest_decay, particle_shifting,
 };
 use crate::simd::Real;
 use crate::step::Limit;
 use crate::walls::{MOVING_WALLS, Slip, WALLS};
 
 /// Most stages that a scene may have.
-pub(super) const MOST_STAGES: usize = 4;
+pub(super) const MOST_STAGES: usize = 5;
 
 /// The effects with sweeps of their own that the configuration calls for: one line each.
 pub(super) fn stages<R: Real, const D: usize>(
@@ -34,6 +34,10 @@ pub(super) fn stages<R: Real, const D: usize>(
     add(c.riemann_viscosity.then(|| {
         let term = RiemannViscosity::new(c.reference_density, c.sound_speed);
         alone(c, term, RIEMANN_VISCOSITY, false)
+    }));
+    add(c.surface_tension.map(|sigma| {
+        let (kernel, rho) = ((c.kernel, c.smoothing_length), c.reference_density);
+        Box::new(SurfaceTension::new(sigma, n, kernel, c.spacing, rho)) as Box<dyn Stage<R, D>>
     }));
     add(c.tensile_control.map(|t| match t.form {
         TensileForm::Sun => {
@@ -97,6 +101,7 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
         (LAMINAR_VISCOSITY, c.laminar_viscosity.is_some()),
         (HerschelBulkley::DECLARATION, c.herschel_bulkley.is_some()),
         (Smagorinsky::DECLARATION, c.turbulence.is_some()),
+        (SURFACE_TENSION, c.surface_tension.is_some()),
         (
             Declaration {
                 limit: riemann.then_some(Limit::Viscous),

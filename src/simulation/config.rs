@@ -59,6 +59,9 @@ pub struct Config {
     /// A liquid with yield stress.
     #[serde(default)]
     pub herschel_bulkley: Option<HerschelBulkleyConfig>,
+    /// Surface tension in N/m.
+    #[serde(default)]
+    pub surface_tension: Option<f64>,
     /// Density diffusion.
     #[serde(default)]
     pub density_diffusion: Option<DensityDiffusionConfig>,
@@ -223,6 +226,8 @@ pub enum TensileForm {
 pub enum ShiftingForm {
     /// Sun et al. 2017.
     Sun,
+    /// As `Sun`, weaker and hardly through a surface: only with a free surface.
+    Gentle,
     /// Lind et al. 2012.
     Lind,
     /// As `Sun`, and the particles take the fields along: Sun et al. 2019.
@@ -235,7 +240,7 @@ impl ShiftingForm {
     /// How the fields follow the shift, if they do.
     pub fn transport(self) -> Option<Transport> {
         match self {
-            ShiftingForm::Sun | ShiftingForm::Lind => None,
+            ShiftingForm::Sun | ShiftingForm::Gentle | ShiftingForm::Lind => None,
             ShiftingForm::Consistent => Some(Transport::Differences),
             ShiftingForm::TransportVelocity => Some(Transport::Stress),
         }
@@ -306,6 +311,9 @@ impl Config {
                 positive("herschel_bulkley.max_viscosity", bound)?;
             }
         }
+        if let Some(sigma) = self.surface_tension {
+            positive("surface_tension", sigma)?;
+        }
         if let Some(d) = self.density_diffusion {
             not_negative("density_diffusion.delta", d.delta)?;
         }
@@ -319,6 +327,16 @@ impl Config {
             return Err(Error::Input(
                 "shifting.form: found transport-velocity with a free surface, which its background pressure would drive \
                  apart; allowed there are sun, consistent and lind"
+                    .to_owned(),
+            ));
+        }
+        if let Some(s) = self.shifting
+            && s.form == ShiftingForm::Gentle
+            && !s.free_surface
+        {
+            return Err(Error::Input(
+                "shifting.form: found gentle without a free surface, which it is for; allowed there are sun, consistent, \
+                 lind and transport-velocity"
                     .to_owned(),
             ));
         }

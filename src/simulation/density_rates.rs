@@ -61,6 +61,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
         let speed = self.state.speed;
         self.shifting.map(|(form, around)| match form {
             ShiftingForm::Sun | ShiftingForm::Consistent => Shift::sun::<D>(&around, speed, dt),
+            ShiftingForm::Gentle => Shift::gentle::<D>(&around, speed, dt),
             ShiftingForm::Lind => Shift::lind::<D>(&around, speed, dt),
             ShiftingForm::TransportVelocity => {
                 Shift::transport_velocity::<D>(&around, speed, self.config.sound_speed, dt)

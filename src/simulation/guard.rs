@@ -45,13 +45,14 @@ pub(super) struct Guard<const D: usize> {
     pub(super) memory: Memory,
 }
 
-/// Whether nothing but gravity works on the fluid. A wall in motion does; and where gravity changes, or acts along a
+/// Whether nothing but gravity works on the fluid. A wall in motion does, and so does surface tension; and where gravity changes, or acts along a
 /// period, potential energy is not a function of position.
 fn is_closed(config: &Config, wall: &Given) -> bool {
     let falls = |axis: usize| config.gravity.as_ref().is_some_and(|g| g[axis] != 0.0);
     let steady = config.motion.is_empty() && config.gravity_over_time.is_empty();
     let mut periods = config.periodic.iter().enumerate();
     steady
+        && config.surface_tension.is_none()
         && wall.velocity.iter().all(|&v| v == 0.0)
         && !periods.any(|(a, p)| p.is_some() && falls(a))
 }

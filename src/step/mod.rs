@@ -4,7 +4,7 @@ mod integrator;
 mod motion;
 mod passes;
 mod predictor_corrector;
-mod projection;
+pub(crate) mod projection;
 mod runge_kutta_2;
 mod runge_kutta_4;
 mod shift;

@@ -11,7 +11,7 @@ const SOLUTIONS: usize = 3;
 
 /// The coefficients `c` for which `v_i + |v_i| Σ c_k φ_k(i)` ([`freed`]) has no moment `Σ m v·φ_k`, with the `mass`, the vectors
 /// `of` and the `fields` of `n` particles; zero where nothing moves.
-pub(super) fn coefficients<const D: usize, const K: usize>(
+pub(crate) fn coefficients<const D: usize, const K: usize>(
     n: usize,
     mass: impl Fn(usize) -> f64 + Sync + Send,
     of: impl Fn(usize) -> [f64; D] + Sync + Send,
@@ -46,7 +46,7 @@ pub(super) fn coefficients<const D: usize, const K: usize>(
 }
 
 /// The vector of a particle, freed of the moments.
-pub(super) fn freed<const D: usize, const K: usize>(
+pub(crate) fn freed<const D: usize, const K: usize>(
     vector: [f64; D],
     fields: impl FnOnce() -> [[f64; D]; K],
     coefficients: &SVector<f64, K>,
@@ -62,7 +62,7 @@ pub(super) fn freed<const D: usize, const K: usize>(
 }
 
 /// Translations along the axes, then, for `K > D`, the rotations of `x`: about the third axis in 2D, about each in 3D.
-pub(super) fn rigid_motions<const D: usize, const K: usize>(x: &[f64; D]) -> [[f64; D]; K] {
+pub(crate) fn rigid_motions<const D: usize, const K: usize>(x: &[f64; D]) -> [[f64; D]; K] {
     std::array::from_fn(|k| {
         if k < D {
             std::array::from_fn(|a| f64::from(u8::from(a == k)))

@@ -19,17 +19,20 @@ pub enum Limit {
     Output,
     /// The guard goes carefully after trouble.
     Guard,
+    /// The shortest capillary wave crosses a spacing.
+    Capillary,
 }
 
 impl Limit {
     /// All limits.
-    pub const ALL: [Limit; 6] = [
+    pub const ALL: [Limit; 7] = [
         Limit::Acoustic,
         Limit::Viscous,
         Limit::Force,
         Limit::Fixed,
         Limit::Output,
         Limit::Guard,
+        Limit::Capillary,
     ];
 
     /// The limit that a checkpoint counts as `index`.
@@ -47,6 +50,7 @@ impl Limit {
             Limit::Fixed => "fixed",
             Limit::Output => "output",
             Limit::Guard => "guard",
+            Limit::Capillary => "capillary",
         }
     }
 }

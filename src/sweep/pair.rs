@@ -12,6 +12,8 @@ pub mod slot {
     pub const PRESSURE: usize = 1;
     /// Dynamic viscosity, in sweeps that read no pressure.
     pub const VISCOSITY: usize = 1;
+    /// How near a surface, in sweeps that read no pressure.
+    pub const NEARNESS: usize = 1;
     /// `ρ/ρ0 - 1`.
     pub const CONDENSATION: usize = 2;
     /// First component of the velocity.
@@ -83,6 +85,11 @@ macro_rules! fields {
         #[inline(always)]
         pub fn viscosity(&self) -> L {
             self.$field(slot::VISCOSITY)
+        }
+        /// How near a surface, where a sweep reads that.
+        #[inline(always)]
+        pub fn nearness(&self) -> L {
+            self.$field(slot::NEARNESS)
         }
         /// `ρ/ρ0 - 1`.
         #[inline(always)]

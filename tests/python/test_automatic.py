@@ -67,7 +67,7 @@ def test_the_engine_is_told_what_was_chosen():
             assert config["shifting"] is None
         else:
             surface = automatic.free_surface(scene).value
-            every = scene.numerics.shifting_interval
+            every = automatic.shifting_interval(scene)
             assert config["shifting"] == {
                 "form": shifting,
                 "free_surface": surface,

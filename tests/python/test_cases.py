@@ -20,6 +20,7 @@ NAMES = (
     "gearbox",
     "herschel-bulkley-channel",
     "mud",
+    "oscillating-drop",
     "poiseuille",
     "sloshing",
     "standing-wave",

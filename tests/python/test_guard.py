@@ -17,7 +17,7 @@ from kolk.scene import Scene
 from kolk.simulation import Simulation
 from tanks import tank
 
-LIMITS = {"acoustic", "viscous", "force", "fixed", "output", "guard"}
+LIMITS = {"acoustic", "viscous", "force", "fixed", "output", "guard", "capillary"}
 
 
 def hasty(guard: str = "on", **changes: Any) -> Scene:

@@ -12,6 +12,7 @@ import numpy as np
 
 from . import records
 from .band import align, compare_band
+from .drops import compare_capillary_drop, drop_of
 from .fields import compare_channel, compare_hydrostatic, compare_taylor_green
 from .front import ALIGNED_AT, compare_front
 from .norms import Norms, norms
@@ -113,6 +114,8 @@ def _analytic(run: records.RunLike, asked: Comparison) -> list[ComparisonResult]
         )
     if asked.reference == "standing_wave":
         return compare_standing_wave(run.frames, wave_of(given), given.get("bed", 0.0))
+    if asked.reference == "CapillaryDrop":
+        return compare_capillary_drop(run.frames, drop_of(given))
     return []
 
 
@@ -122,6 +125,7 @@ __all__ = [
     "common_shift",
     "compare",
     "compare_band",
+    "compare_capillary_drop",
     "compare_channel",
     "compare_front",
     "compare_hydrostatic",

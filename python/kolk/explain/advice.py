@@ -50,11 +50,11 @@ def equivalent_viscosity(scene: Scene) -> float:
 
     Source: Monaghan, Rep. Prog. Phys. 68 (2005) 1703. 0 without artificial viscosity.
     """
-    viscosity = scene.fluid[0].viscosity
-    if viscosity is None or viscosity.artificial is None:
+    alpha = automatic.artificial(scene)
+    if alpha is None:
         return 0.0
     length_speed = scene.smoothing_length * scene.sound_speed
-    return viscosity.artificial * length_speed / (2.0 * (scene.dimension + 2.0))
+    return float(alpha.value) * length_speed / (2.0 * (scene.dimension + 2.0))
 
 
 def diffusion_length(viscosity: float, time: float) -> float:
@@ -122,7 +122,8 @@ def _quadratic_term(scene: Scene) -> Advice | None:
 
 def _no_viscosity(scene: Scene) -> Advice | None:
     free = automatic.free_surface(scene).value
-    damped = scene.fluid[0].viscosity is not None or automatic.scheme(scene).value == "riemann"
+    viscous = scene.fluid[0].viscosity is not None or automatic.artificial(scene) is not None
+    damped = viscous or automatic.scheme(scene).value == "riemann"
     if damped or not free:
         return None
     return Advice(

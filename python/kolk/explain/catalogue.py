@@ -73,8 +73,15 @@ def _viscosity(name: str) -> Callable[[Scene], str]:
     return why
 
 
+def _artificial(scene: Scene) -> str:
+    choice = automatic.artificial(scene)
+    if choice is None:
+        return _viscosity("artificial")(scene)
+    return _chosen(automatic.artificial)(scene)
+
+
 def _surface_tension(scene: Scene) -> str:
-    value = getattr(scene.fluid[0], "surface_tension", None)
+    value = scene.fluid[0].surface_tension
     key = _key(scene, "surface_tension")
     return f"left out: no {key}" if value is None else _asked(key, value)
 
@@ -121,10 +128,9 @@ def _contact(scene: Scene) -> str:
 
 def free_of_core(scene: Scene) -> bool:
     """Whether fluid particles go without the soft core: laminar flow that fills its space."""
-    viscosity = scene.fluid[0].viscosity
     form = automatic.laminar_form(scene)
-    artificial = viscosity is not None and viscosity.artificial is not None
-    return form is not None and form.value == "morris" and not artificial
+    artificial = automatic.artificial(scene)
+    return form is not None and form.value == "morris" and artificial is None
 
 
 def _walls(scene: Scene) -> str:
@@ -165,7 +171,7 @@ CATALOGUE: tuple[Entry, ...] = (
         "artificial viscosity",
         "takes up noise and shocks between approaching particles",
         "term of the sweep of forces",
-        _viscosity("artificial"),
+        _artificial,
         _no("artificial_viscosity"),
     ),
     Entry(

@@ -28,7 +28,7 @@ def show(found: Explanation, console: Console) -> None:
             f"{found.time_step:.3g} s, set by the {found.limit} limit"
         )
     table = Table(box=box.SIMPLE, padding=(0, 0, 0, 1))
-    table.add_column("effect", overflow="fold")
+    table.add_column("effect", overflow="fold", min_width=16)
     numbers = ["bytes", "sweeps", "limit"]
     if pilot is not None:
         numbers += ["ns", "noise", "share"]
@@ -49,7 +49,7 @@ def show(found: Explanation, console: Console) -> None:
         table.add_row(
             "sum of the parts",
             *[""] * 3,
-            f"{parts:.1f}",
+            _figure(parts),
             "",
             f"{100.0 * pilot.sum_over_whole:.1f} %",
         )
@@ -58,7 +58,7 @@ def show(found: Explanation, console: Console) -> None:
             f"{pilot.bytes_per_particle:.0f}",
             "",
             "",
-            f"{pilot.whole.value:.1f}",
+            _figure(pilot.whole.value),
             f"{pilot.whole.low:.0f} .. {pilot.whole.high:.0f}",
             "100.0 %",
         )
@@ -94,13 +94,17 @@ def show(found: Explanation, console: Console) -> None:
             line(f"Not measured: the pilot does not run without {name}: {why}")
 
 
+def _figure(nanoseconds: float) -> str:
+    return f"{nanoseconds:.1f}" if nanoseconds < 1000.0 else f"{nanoseconds:.0f}"
+
+
 def _cost(effect: EffectReport) -> list[str]:
     cost = effect.cost
     if cost is None:
         return ["in pressure", "", ""] if effect.name == "contact" else ["", "", ""]
     interval = cost.nanoseconds
     return [
-        f"{interval.value:.1f}",
+        _figure(interval.value),
         f"{interval.low:.0f} .. {interval.high:.0f}",
         f"{100.0 * cost.share:.1f} %",
     ]

@@ -6,6 +6,7 @@ in SI units, each with its formula and its source in the docstring.
 
 from __future__ import annotations
 
+from .capillary import CapillaryDrop
 from .channel import couette, herschel_bulkley, poiseuille
 from .collapse import DamBreakStates, ritter, stoker, stoker_states
 from .drops import (
@@ -20,6 +21,7 @@ from .vortex import taylor_green, taylor_green_decay_rate
 from .waves import StandingWave, hydrostatic_pressure, standing_wave
 
 __all__ = [
+    "CapillaryDrop",
     "DamBreakStates",
     "DropHistory",
     "Reference",

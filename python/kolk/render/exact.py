@@ -12,6 +12,7 @@ from matplotlib.axes import Axes
 from matplotlib.ticker import FuncFormatter
 
 from kolk import references
+from kolk.compare.drops import drop_of, strain
 from kolk.compare.fields import FrameLike, fluid
 from kolk.compare.waves import mode_share, wave_of
 
@@ -132,6 +133,18 @@ def _wave(axes: Axes, frames: Sequence[FrameLike], asked: Comparison) -> None:
     axes.set_ylabel("share of the wave in the velocity")
 
 
+def _drop(axes: Axes, frames: Sequence[FrameLike], asked: Comparison) -> None:
+    drop = drop_of(dict(asked.parameters))
+    time = np.array([frame.time for frame in frames])
+    rate = np.array([strain(frame) for frame in frames])
+    exact_time = np.linspace(time[0], time[-1], 400)
+    exact = np.exp(-drop.damping * exact_time) * np.cos(drop.frequency * exact_time)
+    axes.plot(time, rate / rate[0], "o", ms=3.5, color=style.RUN, label="kolk")
+    axes.plot(exact_time, exact, color=style.REFERENCE, label="small oscillations, Rayleigh 1879")
+    axes.set_xlabel("t [s]")
+    axes.set_ylabel("rate of strain / its start")
+
+
 def _particles(axes: Axes, value: FloatArray, height: FloatArray, *, first: bool) -> None:
     axes.plot(
         value,
@@ -148,6 +161,7 @@ def _particles(axes: Axes, value: FloatArray, height: FloatArray, *, first: bool
 
 DRAWN: dict[str, Callable[[Axes, Sequence[FrameLike], Comparison], None]] = {
     "poiseuille": _channel,
+    "CapillaryDrop": _drop,
     "standing_wave": _wave,
     "couette": _channel,
     "hydrostatic_pressure": _still,

@@ -107,11 +107,22 @@ def shifting(scene: Scene) -> Choice:
     given = scene.numerics.shifting
     if given != "auto":
         return _given(key, given)
+    if scene.fluid[0].surface_tension is not None:
+        reason = "a shift through the surface would work against its tension and drive the flow"
+        return Choice(key, "gentle", True, reason)
     if free_surface(scene).value:
         reason = "keeps stretched tongues of fluid from breaking up, and leaves the surface alone"
     else:
         reason = "keeps particles evenly spread where pressure turns negative"
     return Choice(key, "sun", True, reason)
+
+
+def shifting_interval(scene: Scene) -> int:
+    """Steps from one shift to the next: if none is given 2, but 1 for the gentle form."""
+    given = scene.numerics.shifting_interval
+    if given is not None:
+        return given
+    return 1 if shifting(scene).value == "gentle" else 2
 
 
 def tensile_control(scene: Scene) -> Choice:
@@ -162,6 +173,28 @@ def acoustic_damper(scene: Scene) -> Choice:
     if free_surface(scene).value:
         return Choice(key, 0.3, True, "impacts under a free surface make sound")
     return Choice(key, 0.0, True, "without a free surface nothing strikes and makes sound")
+
+
+ORDERING = 0.05
+"""Artificial viscosity of a liquid with surface tension where the scene names none."""
+
+
+def artificial(scene: Scene) -> Choice | None:
+    """The coefficient of the artificial viscosity; None without it."""
+    fluid = scene.fluid[0]
+    key = f"fluid.{fluid.name}.viscosity.artificial"
+    if fluid.viscosity is not None and fluid.viscosity.artificial is not None:
+        return _given(key, float(fluid.viscosity.artificial))
+    if fluid.surface_tension is None or scheme(scene).value == "riemann":
+        return None
+    reason = "under surface tension nothing else takes up what disorders a surface; 0 turns it off"
+    return Choice(key, ORDERING, True, reason)
+
+
+def added_viscosity(scene: Scene) -> Choice | None:
+    """The artificial viscosity that kolk adds; None where the scene names one or needs none."""
+    choice = artificial(scene)
+    return choice if choice is not None and choice.automatic else None
 
 
 def laminar_form(scene: Scene) -> Choice | None:
@@ -248,16 +281,20 @@ def sound_speed(scene: Scene) -> Choice:
     key = f"fluid.{fluid.name}.sound_speed"
     if fluid.sound_speed != "auto":
         return _given(key, scene.sound_speed)
+    from .fill import capillary_speed, fall_height
+
     filling = scene.filling
     speed = filling.expected_speed
     fall = 0.0
+    positions = [b.position for b in filling.bodies if b.kind == "fluid"]
     strength = float(np.linalg.norm(scene.weight))
     if strength > 0.0:
-        from .fill import fall_height
-
-        fall = fall_height(scene, [b.position for b in filling.bodies if b.kind == "fluid"])
+        fall = fall_height(scene, positions)
+    capillary = capillary_speed(scene, positions)
     if fall > 0.0 and abs(2.0 * np.sqrt(strength * fall) - speed) <= 1e-9 * speed:
         source = f"2 sqrt(g H) of a front that collapses through H = {fall:.4g} m"
+    elif capillary > 0.0 and abs(capillary - speed) <= 1e-9 * speed:
+        source = "sqrt(2 p/rho) of the capillary pressure in the thinnest fluid"
     elif scene.numerics.expected_speed == speed:
         source = "numerics.expected_speed"
     else:
@@ -274,6 +311,7 @@ CHOICES: tuple[Callable[[Scene], Choice | None], ...] = (
     shifting,
     tensile_control,
     acoustic_damper,
+    added_viscosity,
     laminar_form,
     wall,
     suction,

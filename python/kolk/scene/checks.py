@@ -16,7 +16,7 @@ from .model import Scene
 from .motion import Gravity
 from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, Numerics, PressureProbe, Wall
 
-MATERIAL = ("density", "sound_speed", "viscosity", "eos", "gamma")
+MATERIAL = ("density", "sound_speed", "viscosity", "surface_tension", "eos", "gamma")
 
 
 def check_consistency(scene: Scene) -> None:
@@ -113,6 +113,12 @@ def _materials(scene: Scene) -> Iterator[Problem]:
                     f"differs from that of '{first.name}': all fluids of a scene share one "
                     "material; give both the same value",
                 )
+    if first.surface_tension is not None and not scene.free_surface:
+        yield Problem(
+            ("fluid", first.name, "surface_tension"),
+            f"found {first.surface_tension:g}, but the fluid has no free surface: leave it out, or "
+            "set numerics.free_surface = true",
+        )
     for wall in scene.wall[1:]:
         if wall.slip != scene.wall[0].slip:
             yield Problem(
@@ -194,6 +200,12 @@ def _numerics(scene: Scene) -> Iterator[Problem]:
                 f'found {shown(fluid.viscosity.artificial)}, but the scheme "riemann" has a '
                 'dissipation of its own: leave it out, or use scheme = "delta-sph"',
             )
+    if scene.numerics.shifting == "gentle" and not scene.free_surface:
+        yield Problem(
+            ("numerics", "shifting"),
+            'found "gentle", which is for fluid with a free surface: use "sun", "consistent", '
+            '"lind" or "transport-velocity"',
+        )
     if scene.numerics.shifting == "transport-velocity" and scene.free_surface:
         yield Problem(
             ("numerics", "shifting"),

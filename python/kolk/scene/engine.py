@@ -14,8 +14,10 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     fluid, numerics = scene.fluid[0], scene.numerics
     viscosity = fluid.viscosity
     artificial = laminar = yielding = turbulence = None
-    if viscosity is not None and viscosity.artificial is not None:
-        artificial = {"alpha": viscosity.artificial, "beta": viscosity.beta}
+    alpha = automatic.artificial(scene)
+    if alpha is not None:
+        beta = 0.0 if viscosity is None else viscosity.beta
+        artificial = {"alpha": alpha.value, "beta": beta}
     if viscosity is not None and viscosity.laminar is not None:
         form = automatic.laminar_form(scene)
         assert form is not None, "there is a laminar viscosity"
@@ -42,7 +44,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         shifting = {
             "form": form_of_shift,
             "free_surface": scene.free_surface,
-            "every": numerics.shifting_interval,
+            "every": automatic.shifting_interval(scene),
         }
     method, suction = automatic.wall(scene), automatic.suction(scene)
     if method is not None and suction is not None:
@@ -73,6 +75,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "laminar_viscosity": laminar,
         "turbulence": turbulence,
         "herschel_bulkley": yielding,
+        "surface_tension": fluid.surface_tension,
         "density_diffusion": diffusion,
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,

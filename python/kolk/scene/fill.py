@@ -286,6 +286,20 @@ def _expected_speed(scene: Scene, velocities: list[FloatArray], walls: list[_Par
     return max(*speeds, scene.numerics.expected_speed or 0.0, 0.0)
 
 
+def capillary_speed(scene: Scene, fluids: Sequence[FloatArray]) -> float:
+    """Speed in m/s that surface tension gives the thinnest fluid, as a round one; 0 without.
+
+    fluids: positions (n, D) in m.
+    """
+    fluid = scene.fluid[0]
+    if fluid.surface_tension is None:
+        return 0.0
+    thinnest = min(float(np.min(np.ptp(p, axis=0))) for p in fluids) + scene.spacing
+    return material.capillary_speed(
+        fluid.surface_tension, fluid.density, 0.5 * thinnest, scene.dimension
+    )
+
+
 def fall_height(scene: Scene, fluids: Sequence[FloatArray]) -> float:
     """Height in m through which fluid at ``fluids``, positions (n, D) in m, can fall: to the floor
     of a tank, the top of another wall."""
@@ -312,12 +326,14 @@ def _sound_speed(scene: Scene, fluids: list[_Part], speed: float) -> tuple[float
     if given != "auto":
         return float(given), 0.0
     gravity = float(np.linalg.norm(scene.weight))
-    c0 = material.sound_speed(speed, fall_height(scene, [p.position for p in fluids]), gravity)
+    positions = [p.position for p in fluids]
+    speed = max(speed, capillary_speed(scene, positions))
+    c0 = material.sound_speed(speed, fall_height(scene, positions), gravity)
     if c0 == 0.0:
         raise _error(
             ("fluid", scene.fluid[0].name, "sound_speed"),
             'found "auto", but nothing says how fast the flow will be: no fall under gravity, no '
-            "velocity at the start. Give a number, or numerics.expected_speed",
+            "velocity at the start, no surface tension. Give a number, or numerics.expected_speed",
         )
     return c0, c0 * material.MACH
 

@@ -78,6 +78,14 @@ def hydrostatic_pressure(
     return np.asarray(stiffness * np.expm1(growth))
 
 
+def capillary_speed(tension: float, density: float, radius: float, dimension: int) -> float:
+    """Speed in m/s that capillary pressure gives: ``sqrt(2 p/rho)``, p = (D - 1) sigma/R (Laplace).
+
+    tension in N/m, radius of the surface in m.
+    """
+    return float(np.sqrt(2.0 * (dimension - 1) * tension / (density * radius)))
+
+
 def sound_speed(expected_speed: float, drop: float, gravity: float) -> float:
     """Sound speed in m/s that keeps the flow weakly compressible.
 

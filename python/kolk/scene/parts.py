@@ -158,6 +158,9 @@ class Fluid(_Body):
     density: Positive = Field(default=1000.0, description="reference density, kg/m^3")
     sound_speed: SoundSpeed = Field("auto", description='m/s, or "auto"')
     viscosity: Viscosity | None = Field(default=None, description="leave it out for none")
+    surface_tension: Positive | None = Field(
+        default=None, description="of a free surface, N/m; leave it out for none"
+    )
     velocity: Velocity | None = Field(
         default=None, description="at the start, m/s: numbers or expressions"
     )
@@ -335,15 +338,19 @@ class Numerics(Model):
     delta: Annotated[Real, Field(gt=0, le=0.2)] = Field(
         default=0.1, description="of the density diffusion"
     )
-    shifting: Literal["auto", "none", "sun", "lind", "consistent", "transport-velocity"] = Field(
+    shifting: Literal[
+        "auto", "none", "sun", "gentle", "lind", "consistent", "transport-velocity"
+    ] = Field(
         default="auto",
-        description="consistent: as sun, and particles take velocity and density along; "
-        "transport-velocity: by a background pressure, without a free surface only; auto: sun",
+        description="gentle: as sun, with 0.3 of the strength and near a surface only along it; "
+        "consistent: as sun, and particles take velocity and density along; transport-velocity: by "
+        "a background pressure, without a free surface only; auto: sun, but gentle with surface "
+        "tension",
     )
-    shifting_interval: Annotated[int, Field(ge=1, le=4)] = Field(
-        default=2,
+    shifting_interval: Annotated[int, Field(ge=1, le=4)] | None = Field(
+        default=None,
         description="steps from one shift to the next, which does the work of all of them; 1 costs "
-        "up to a quarter more time, for the same error",
+        "up to a quarter more time, for the same error; if absent 2, but 1 for gentle",
     )
     tensile_control: Literal["auto", "none", "sun", "monaghan"] = Field(
         default="auto",

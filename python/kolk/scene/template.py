@@ -28,6 +28,7 @@ shape = { box = { from = [0.0, 0.0], to = [0.6, 0.3] } }
 density = 1000.0
 sound_speed = "auto"               # from the largest expected speed and depth
 viscosity = { artificial = 0.02 }  # and/or { laminar = 1e-6 }; leave it out and there is none
+# surface_tension = 0.072         # N/m, of a free surface
 # velocity = [0.0, 0.0]            # numbers, or expressions such as ["0.1*y", 0.0]
 # pressure = "hydrostatic"         # or "zero", or an expression in Pa
 # arrangement = "packed"           # for curved and slanted shapes: relaxed, not on a lattice
@@ -59,7 +60,7 @@ force = { body = "tank" }
 scheme = "auto"                    # or delta-sph, edac, riemann
 density_diffusion = "antuono"      # or molteni, fourtakas, none
 tensile_control = "auto"           # or none, sun, monaghan: for fluid under tension
-shifting = "auto"                  # or none, sun, lind
+shifting = "auto"                  # or none, sun, gentle, lind
 acoustic_damper = "auto"           # or a number, 0 for none: takes up sound
 wall = "adami"                     # or dynamic
 

@@ -30,7 +30,7 @@ Floats = NDArray[np.float64]
 AFFORDABLE = 1_500_000
 """Particles up to which a run is filled to count them: more take seconds."""
 
-POWER = {"acoustic": 1.0, "viscous": 2.0, "force": 0.5, "fixed": 0.0}
+POWER = {"acoustic": 1.0, "viscous": 2.0, "force": 0.5, "capillary": 1.5, "fixed": 0.0}
 """Power of the spacing that each limit of the time step goes with."""
 
 MODEL = 0.15
