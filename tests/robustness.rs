@@ -56,6 +56,16 @@ fn a_scene_with_a_particle_a_million_kilometres_away_runs() {
 }
 
 #[test]
+fn a_support_of_more_particles_than_memory_holds_is_refused() {
+    // Found by fuzzing: the lattice within the support is summed once, and its numbers overflowed.
+    let mut config = tank::<2>(20, 12).configuration();
+    assert!(config.validate().is_ok());
+    config.smoothing_length = 1e9 * config.spacing;
+    let refused = config.validate();
+    assert!(matches!(refused, Err(Error::Input(text)) if text.starts_with("smoothing_length")));
+}
+
+#[test]
 fn coincident_particles_stay_finite() {
     for precision in [Precision::F64, Precision::Mixed] {
         for apart in [0.0, 1e-300, 1e-16, 1e-12] {

@@ -289,6 +289,13 @@ impl Config {
         }
         positive("spacing", self.spacing)?;
         positive("smoothing_length", self.smoothing_length)?;
+        // Sums over the lattice within the support, made once, are that many terms to the power of the dimension.
+        if self.smoothing_length > 100.0 * self.spacing {
+            return Err(Error::Input(format!(
+                "smoothing_length: found {:e}, allowed is at most 100 spacings of {:e}",
+                self.smoothing_length, self.spacing
+            )));
+        }
         positive("reference_density", self.reference_density)?;
         positive("sound_speed", self.sound_speed)?;
         positive("gamma", self.gamma)?;
