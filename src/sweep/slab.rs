@@ -58,21 +58,6 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
             ..
         } = &mut *self.workspace;
         for cell in self.cells.clone() {
-            let all = target.cells.particles(cell, cell + 1);
-            if all.is_empty() {
-                continue;
-            }
-            let runs = grid.around(cell);
-            // Nobody is near, and nothing changes: a look at each particle is all the work.
-            if runs
-                .iter()
-                .all(|run| source.cells.particles(run.first, run.end).is_empty())
-                && all
-                    .into_iter()
-                    .all(|i| pass.is_settled(i - start, &self.out))
-            {
-                continue;
-            }
             let mut frame: Option<[f64; D]> = None;
             for part in (0..Grid::<D>::PARTS).step_by(self.parts_per_cluster) {
                 let particles = target.cells.bins(cell, part, part + self.parts_per_cluster);
@@ -89,12 +74,18 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
                         _ => at(first),
                     };
                     if frame != Some(origin) {
-                        around.gather::<L, D>(source, &runs, &origin);
+                        around.gather::<L, D>(source, &grid.around(cell), &origin);
                         frame = Some(origin);
                     }
                     let mut end = first + 1;
                     while end < particles.end && beside(&origin, end) {
                         end += 1;
+                    }
+                    if around.len() == 0
+                        && (first..end).all(|i| pass.is_settled(i - start, &self.out))
+                    {
+                        first = end;
+                        continue;
                     }
                     let relative = |i: usize| -> [R; D] {
                         std::array::from_fn(|a| R::from_f64(target.position[a][i] - origin[a]))
