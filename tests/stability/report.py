@@ -32,9 +32,11 @@ are how often the guard went back to an earlier state and on with a shorter step
 TAIL = """## Kills, full disks and chance
 
 Runs killed with `kill -9` once or twice at random moments, fifty of them, each resumed to the same
-bytes as an undisturbed run with no file half written: fifty of fifty. Disks in memory that fill up
-after 60, 150 and 400 kB: the run ends with a sentence, what was written can be read, and with room
-again it goes on to the same bytes: three of three (`tests/stability/test_durability.py`).
+bytes as an undisturbed run with no file half written: 48 of fifty at the first go; the other two
+met the test's own time limit on a busy machine (since raised), and were right when repeated. Disks
+in memory that fill up after 60, 150 and 400 kB: the run ends with a sentence, what was written can
+be read, and with room again it goes on to the same bytes: three of three
+(`tests/stability/test_durability.py`).
 
 Fuzzing (`tests/python/test_fuzz.py`, `fuzz/`) has found, and tests now hold: neighbours that were
 missed across a period by points 1e15 periods away; radii so small that their squares are zero, now
