@@ -124,10 +124,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
             .collect()
     }
 
-    /// Begins the audit of a step, if it is its turn: only a step with a shift shows what shifting takes.
+    /// Begins the audit of a step, if it is its turn: of a step with a shift, then of one after it, and so on, for what a
+    /// shift disorders is taken in the steps that follow.
     pub(super) fn begin_audit(&mut self) {
-        let complete = self.config.shifting.is_none() || self.shifts_now();
-        if complete && self.step >= self.budget.next {
+        let every = self.config.shifting.map_or(1, |s| u64::from(s.every.get()));
+        let turn = (self.step + 1 + self.budget.audits).is_multiple_of(every);
+        if turn && self.step >= self.budget.next {
             self.budget.next = self.step;
             self.budget.audit = Some([0.0; ENTRIES]);
             self.budget.listens = true;
@@ -149,7 +151,12 @@ impl<R: Real, const D: usize> Solver<R, D> {
         if self.budget.audit.is_none() {
             return;
         }
-        let shifted = self.power_of_shift(dt) + self.power_of_following();
+        // Between shifts as at the last.
+        let shifted = if self.shifts_now() {
+            self.power_of_shift(dt) + self.power_of_following()
+        } else {
+            self.budget.power[SHIFTING]
+        };
         self.take(SHIFTING, &[shifted]);
         self.budget.listens = false;
         if let Some(power) = self.budget.audit.take() {

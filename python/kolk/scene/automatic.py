@@ -52,12 +52,12 @@ def free_surface(scene: Scene) -> Choice:
 def kernel(scene: Scene) -> Choice:
     """The smoothing kernel."""
     key = "kernel"
-    if "kernel" in scene.model_fields_set and scene.kernel != "auto":
+    if key in scene.model_fields_set:
         return _given(key, scene.kernel)
-    if free_surface(scene).value:
-        return Choice(key, "wendland-c2", True, "the least error for its time at a free surface")
-    if any(f.viscosity is not None and f.viscosity.herschel_bulkley for f in scene.fluid):
-        return Choice(key, "wendland-c2", True, "wide enough for rates of shear to be smooth")
+    if free_surface(scene).value or scene.wall:
+        return Choice(
+            key, "wendland-c2", True, "the least error for its time at walls and surfaces"
+        )
     reason = "smooths less on the same neighbours: a quarter less error inside a fluid"
     return Choice(key, "wendland-c4", True, reason)
 

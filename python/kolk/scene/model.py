@@ -60,8 +60,8 @@ class Scene(Model):
     kernel: Literal["auto", "wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = (
         Field(
             default="auto",
-            description="smoothing kernel; auto: wendland-c2, but wendland-c4 for Newtonian fluids "
-            "without free surface",
+            description="smoothing kernel; auto: wendland-c2, but wendland-c4 without walls and "
+            "free surface",
         )
     )
     gravity: GravityKey | None = Field(
@@ -84,12 +84,16 @@ class Scene(Model):
         if self.smoothing_ratio is None:
             self.__dict__["smoothing_ratio"] = DEFAULT_SMOOTHING_RATIO[self.dimension]
             self.model_fields_set.discard("smoothing_ratio")
-        if self.kernel == "auto":
+        left_open = self.kernel == "auto"
+        if left_open:
+            # For the checks; all kernels that kolk may choose have its support.
+            self.__dict__["kernel"] = "wendland-c2"
+            self.model_fields_set.discard("kernel")
+        check_consistency(self)
+        if left_open:
             from .automatic import kernel
 
             self.__dict__["kernel"] = kernel(self).value
-            self.model_fields_set.discard("kernel")
-        check_consistency(self)
         if self.output.every is None:
             # Resolved once, here, so that nothing later has to know the rule.
             output = self.output.model_copy(update={"every": self.until / FRAMES})
