@@ -67,7 +67,7 @@ def test_the_engine_is_told_what_was_chosen():
             assert config["shifting"] is None
         else:
             surface = automatic.free_surface(scene).value
-            every = automatic.shifting_interval(scene)
+            every = scene.numerics.shifting_interval
             assert config["shifting"] == {
                 "form": shifting,
                 "free_surface": surface,
@@ -168,7 +168,7 @@ def test_a_scheme_brings_its_diffusion():
     with pytest.raises(kolk.SceneError, match=r"transport-velocity.*free surface"):
         tank(numerics={"shifting": "transport-velocity"})
     config = json.loads(vortex(numerics={"shifting": "transport-velocity"}).engine_config())
-    assert config["shifting"] == {"form": "transport-velocity", "free_surface": False, "every": 2}
+    assert config["shifting"] == {"form": "transport-velocity", "free_surface": False, "every": 1}
 
 
 def test_every_case_can_say_what_was_chosen():

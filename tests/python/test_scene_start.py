@@ -118,7 +118,7 @@ def test_every_effect_reaches_the_engine() -> None:
     assert config["artificial_viscosity"] == {"alpha": 0.1, "beta": 0.2}
     assert config["laminar_viscosity"] == {"kinematic": 1e-6, "form": "monaghan-gingold"}
     assert config["density_diffusion"] == {"form": "fourtakas", "delta": 0.1}
-    assert config["shifting"] == {"form": "sun", "free_surface": True, "every": 2}
+    assert config["shifting"] == {"form": "sun", "free_surface": True, "every": 1}
     assert config["wall"] == {"method": "dynamic", "slip": "free", "suction": False}
     assert config["smoothing_length"] == pytest.approx(0.04)
 
@@ -141,7 +141,7 @@ def test_what_a_free_surface_decides(scene: Scene, surface: bool) -> None:
     assert scene.free_surface is surface
     config = json.loads(scene.engine_config())
     assert config["laminar_viscosity"]["form"] == ("monaghan-gingold" if surface else "morris")
-    assert config["shifting"] == {"form": "sun", "free_surface": surface, "every": 2}
+    assert config["shifting"] == {"form": "sun", "free_surface": surface, "every": 1}
     assert config["acoustic_damper"] == (0.3 if surface else None)
     if scene.wall:
         assert config["wall"]["suction"] is not surface

@@ -117,14 +117,6 @@ def shifting(scene: Scene) -> Choice:
     return Choice(key, "sun", True, reason)
 
 
-def shifting_interval(scene: Scene) -> int:
-    """Steps from one shift to the next: if none is given 2, but 1 for the gentle form."""
-    given = scene.numerics.shifting_interval
-    if given is not None:
-        return given
-    return 1 if shifting(scene).value == "gentle" else 2
-
-
 def tensile_control(scene: Scene) -> Choice:
     """What keeps fluid under tension from clumping, or "none". Fills the scene with particles."""
     key = "numerics.tensile_control"

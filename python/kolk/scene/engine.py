@@ -44,7 +44,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         shifting = {
             "form": form_of_shift,
             "free_surface": scene.free_surface,
-            "every": automatic.shifting_interval(scene),
+            "every": numerics.shifting_interval,
         }
     method, suction = automatic.wall(scene), automatic.suction(scene)
     if method is not None and suction is not None:
