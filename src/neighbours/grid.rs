@@ -8,6 +8,7 @@
 
 use std::mem::MaybeUninit;
 use std::ops::Range;
+use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Cells of a block of space, repeated over all of it.
 #[derive(Clone, Debug)]
@@ -296,12 +297,16 @@ impl<const D: usize> Grid<D> {
     }
 }
 
+/// The last edition of any [`Cells`].
+static EDITION: AtomicU64 = AtomicU64::new(0);
+
 /// Where the particles of each bin are, once a set is sorted.
 #[derive(Clone, Debug, Default)]
 pub struct Cells {
     /// Index of the first particle of each bin, and at the end the number of particles.
     pub(crate) offsets: Vec<u32>,
     parts: usize,
+    edition: u64,
 }
 
 impl Cells {
@@ -310,7 +315,19 @@ impl Cells {
         Cells {
             offsets: vec![0; cells * parts + 1],
             parts,
+            edition: 0,
         }
+    }
+
+    /// A number that changes when particles are sorted, and that no other cells with particles have: what follows from
+    /// where particles are holds as long as it is the same.
+    pub fn edition(&self) -> u64 {
+        self.edition
+    }
+
+    /// To be called where the particles of bins have changed.
+    pub(crate) fn renew(&mut self) {
+        self.edition = EDITION.fetch_add(1, Ordering::Relaxed) + 1;
     }
 
     /// Number of cells.

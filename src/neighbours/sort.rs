@@ -85,6 +85,10 @@ impl Sorter {
             // SAFETY: buckets own disjoint bins, and disjoint places in the order.
             let offsets = unsafe { offsets.range(&(low..high)) };
             let members = &dealt[starts[b] as usize..starts[b + 1] as usize];
+            if members.is_empty() {
+                offsets.fill(starts[b]);
+                return;
+            }
             offsets.fill(0);
             for &i in members {
                 offsets[keys[i as usize] as usize - low] += 1;
@@ -106,6 +110,7 @@ impl Sorter {
             }
         });
         cells.offsets[bins] = n as u32;
+        cells.renew();
     }
 
     /// Bytes held.

@@ -2,7 +2,7 @@
 
 use super::fluid::reinterpret;
 use super::{Column, Given, Moving, component, permute, rounded, vector_columns};
-use crate::neighbours::{Cells, Grid, Sorter};
+use crate::neighbours::{Cells, Grid, Reached, Sorter};
 use crate::simd::Real;
 
 /// All walls of a scene. Those at rest are sorted once.
@@ -31,6 +31,8 @@ pub struct Wall<R, const D: usize> {
     pub moving: Option<Moving<R, D>>,
     /// Particles by cell.
     pub cells: Cells,
+    /// Cells that the fluid reaches, where wall values follow from it.
+    pub reached: Reached,
 }
 
 impl<R: Real, const D: usize> Wall<R, D> {
@@ -64,6 +66,7 @@ impl<R: Real, const D: usize> Wall<R, D> {
             stages: None,
             moving: None,
             cells: Cells::new(grid.count(), Grid::<D>::PARTS),
+            reached: Reached::default(),
         };
         let n = wall.len();
         wall.sort(grid, &mut Sorter::new(n), &mut Column::new(n));
@@ -151,5 +154,6 @@ impl<R: Real, const D: usize> Wall<R, D> {
             + self.stages.as_ref().map_or(0, |s| 2 * s[0].bytes())
             + self.moving.as_ref().map_or(0, Moving::bytes)
             + self.cells.bytes()
+            + self.reached.bytes()
     }
 }

@@ -258,7 +258,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 "checkpoint: cells are not in order; the file is damaged".to_owned(),
             ));
         }
+        fluid.cells.renew();
         if let Some(wall) = &mut self.wall {
+            wall.cells.renew();
             from.column("wall_pressure", &mut wall.pressure)?;
             from.column("wall_volume", &mut wall.volume)?;
             from.column("wall_condensation", &mut wall.condensation)?;

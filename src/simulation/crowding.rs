@@ -50,6 +50,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
             |range| {
                 let mut sum = (f64::INFINITY, 0);
                 for cell in range {
+                    if self.fluid.cells.particles(cell, cell + 1).is_empty() {
+                        continue;
+                    }
                     for part in 0..Grid::<D>::PARTS {
                         self.look_around(cell, part, all, |nearest| {
                             sum = (sum.0.min(nearest), sum.1 + count(nearest));

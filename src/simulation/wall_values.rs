@@ -25,7 +25,9 @@ impl<R: Real, const D: usize> Solver<R, D> {
                     &fluid.condensation,
                     &fluid.pair_velocity,
                 );
+                let due = wall.reached.due(&self.grid, &wall.cells, &fluid.cells);
                 let mut target = Source::new(&wall.position, &wall.cells)
+                    .only_in(due)
                     .with(slot::VOLUME, &wall.mass)
                     .with_vector(slot::VELOCITY, &wall.pair_velocity);
                 if let Some(moving) = &wall.moving {

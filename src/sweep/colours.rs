@@ -1,6 +1,7 @@
 //! Which blocks of cells can be worked on at the same time when a block also adds to its neighbours.
 
-use crate::neighbours::Grid;
+use super::Totals;
+use crate::neighbours::{Cells, Grid};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -47,38 +48,84 @@ impl<const D: usize> Blocks<D> {
     }
 
     /// Number of blocks.
-    pub(super) fn count(&self) -> usize {
+    fn count(&self) -> usize {
         self.count.iter().product()
     }
 
-    /// Runs `work` on every block with its number, colour by colour.
-    pub(super) fn for_each(&self, work: impl Fn(usize, &BlockOfCells<D>) + Sync) {
-        for colour in 0..1usize << D {
-            let of_axis = |a: usize| colour >> a & 1;
-            if (0..D).any(|a| self.count[a] == 1 && of_axis(a) == 1) {
-                continue;
-            }
-            let members = self.count.map(|c| c.div_ceil(2));
-            (0..members.iter().product::<usize>())
-                .into_par_iter()
-                .with_max_len(1)
-                .for_each(|k| {
-                    let mut rest = k;
-                    let at: [usize; D] = std::array::from_fn(|a| {
-                        let m = rest % members[a];
-                        rest /= members[a];
-                        2 * m + of_axis(a)
-                    });
-                    let cut = |a: usize, b: usize| b * self.cells[a] / self.count[a];
-                    let block = BlockOfCells {
-                        cells: self.cells,
-                        from: std::array::from_fn(|a| cut(a, at[a])),
-                        to: std::array::from_fn(|a| cut(a, at[a] + 1)),
-                    };
-                    let number = (0..D).rev().fold(0, |n, a| n * self.count[a] + at[a]);
-                    work(number, &block);
-                });
+    /// The cells of a block, and its colour.
+    fn block(&self, number: usize) -> (BlockOfCells<D>, usize) {
+        let mut rest = number;
+        let at: [usize; D] = std::array::from_fn(|a| {
+            let place = rest % self.count[a];
+            rest /= self.count[a];
+            place
+        });
+        let cut = |a: usize, b: usize| b * self.cells[a] / self.count[a];
+        let block = BlockOfCells {
+            cells: self.cells,
+            from: std::array::from_fn(|a| cut(a, at[a])),
+            to: std::array::from_fn(|a| cut(a, at[a] + 1)),
+        };
+        (block, (0..D).fold(0, |c, a| c | (at[a] & 1) << a))
+    }
+}
+
+/// The blocks that have particles, until these are sorted again, and what each adds to the totals.
+#[derive(Default)]
+pub(super) struct Inhabited {
+    /// Of the particles' cells.
+    edition: u64,
+    /// By colour.
+    blocks: [Vec<(u32, Totals)>; 8],
+    /// Colour and place there, in the order of blocks.
+    order: Vec<(u8, u32)>,
+}
+
+impl Inhabited {
+    /// Finds the blocks that have particles, where these were sorted since it last did.
+    pub(super) fn follow<const D: usize>(&mut self, blocks: &Blocks<D>, cells: &Cells) {
+        if cells.edition() == self.edition {
+            return;
         }
+        self.edition = cells.edition();
+        // Room for all at once: nothing is allocated later.
+        self.order.clear();
+        self.order.reserve(blocks.count());
+        let members: usize = blocks.count.iter().map(|c| c.div_ceil(2)).product();
+        for list in &mut self.blocks[..1 << D] {
+            list.clear();
+            list.reserve(members);
+        }
+        let has_any = |row: Range<usize>| !cells.particles(row.start, row.end).is_empty();
+        for number in 0..blocks.count() {
+            let (block, colour) = blocks.block(number);
+            if (0..block.rows()).any(|k| has_any(block.row(k))) {
+                let list = &mut self.blocks[colour];
+                self.order.push((colour as u8, list.len() as u32));
+                list.push((number as u32, Totals::default()));
+            }
+        }
+    }
+
+    /// Runs `work` on every block, colour by colour. Totals are added in the order of blocks, whoever computed them.
+    pub(super) fn for_each<const D: usize>(
+        &mut self,
+        blocks: &Blocks<D>,
+        work: impl Fn(&BlockOfCells<D>) -> Totals + Sync,
+    ) -> Totals {
+        for list in &mut self.blocks {
+            list.par_iter_mut()
+                .with_max_len(1)
+                .for_each(|(number, totals)| *totals = work(&blocks.block(*number as usize).0));
+        }
+        let mut sum = Totals::default();
+        for &(colour, place) in &self.order {
+            let (_, totals) = &self.blocks[colour as usize][place as usize];
+            for (s, t) in sum.iter_mut().zip(totals) {
+                *s += t;
+            }
+        }
+        sum
     }
 }
 

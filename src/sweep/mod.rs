@@ -26,10 +26,10 @@ pub use single::Single;
 pub use sums::{ALONE, SumColumns, Sums, Tally, Uses};
 
 use crate::kernel::KernelName;
-use crate::neighbours::{Cells, Grid};
-use crate::particles::{Column, Shared, for_ranges};
+use crate::neighbours::{CellSet, Cells, Grid};
+use crate::particles::{Column, for_ranges};
 use crate::simd::{Lanes, Real, dispatch};
-use colours::{BlockOfCells, Blocks};
+use colours::{BlockOfCells, Blocks, Inhabited};
 use pairs::Block;
 use slab::Slab;
 use std::ops::Range;
@@ -83,6 +83,7 @@ pub struct Source<'a, R, const D: usize> {
     pub position: &'a [Column<f64>; D],
     /// Particles by cell.
     pub cells: &'a Cells,
+    only: Option<&'a CellSet>,
     fields: [(usize, *const R); SLOTS],
     count: usize,
 }
@@ -96,9 +97,22 @@ impl<'a, R: Real, const D: usize> Source<'a, R, D> {
         Source {
             position,
             cells,
+            only: None,
             fields: [(0, std::ptr::null()); SLOTS],
             count: 0,
         }
+    }
+
+    /// As a target of a [`Pass`]: only its particles in the cells of a set get sums; the others keep their output.
+    pub fn only_in(mut self, cells: &'a CellSet) -> Self {
+        self.only = Some(cells);
+        self
+    }
+
+    /// The first cell from `cell` on that may have particles to work for, `end` if there is none before that.
+    #[inline(always)]
+    fn next_cell(&self, cell: usize, end: usize) -> usize {
+        self.only.map_or(cell, |only| only.next(cell, end))
     }
 
     /// Adds a scalar field.
@@ -136,8 +150,7 @@ pub struct Sweeper<R> {
     smoothing_length: f64,
     parts_per_cluster: usize,
     per_cell: f64,
-    /// By block.
-    totals: Mutex<Vec<Totals>>,
+    blocks: Mutex<Inhabited>,
 }
 
 /// One pass from a set to another.
@@ -168,7 +181,7 @@ impl<R: Real> Sweeper<R> {
             smoothing_length,
             parts_per_cluster,
             per_cell,
-            totals: Mutex::default(),
+            blocks: Mutex::default(),
         }
     }
 
@@ -244,23 +257,12 @@ impl<R: Real> Sweeper<R> {
         columns: &SumColumns<R>,
     ) -> Totals {
         let blocks = Blocks::new(pairs.grid, self.per_cell, pairs.fluid.position[0].len());
-        let mut parts = self.totals.lock().unwrap_or_else(PoisonError::into_inner);
-        parts.resize(blocks.count(), Totals::default());
-        let each = Shared::new(&mut parts);
-        blocks.for_each(|k, cells| {
-            let totals = self.block(kernel, pairs, cells, columns);
-            // SAFETY: every block has a place of its own.
-            unsafe { each.write(k, totals) };
-        });
-        parts.iter().fold(Totals::default(), |mut sum, part| {
-            for (s, p) in sum.iter_mut().zip(part) {
-                *s += p;
-            }
-            sum
-        })
+        let mut inhabited = self.blocks.lock().unwrap_or_else(PoisonError::into_inner);
+        inhabited.follow(&blocks, pairs.fluid.cells);
+        inhabited.for_each(&blocks, |cells| self.block(kernel, pairs, cells, columns))
     }
 
-    /// The work of a block of cells, none if it has no particles.
+    /// The work of a block of cells.
     fn block<P: PairPass<R, D>, const D: usize>(
         &self,
         kernel: KernelName,
@@ -268,11 +270,6 @@ impl<R: Real> Sweeper<R> {
         cells: &BlockOfCells<D>,
         columns: &SumColumns<R>,
     ) -> Totals {
-        let at = &pairs.fluid.cells;
-        let empty = |row: Range<usize>| at.particles(row.start, row.end).is_empty();
-        if (0..cells.rows()).all(|k| empty(cells.row(k))) {
-            return Totals::default();
-        }
         let mut workspace = self.workspace();
         dispatch(Block {
             pairs,
@@ -324,7 +321,7 @@ impl<R: Real> Sweeper<R> {
             }
         };
         let (first, end) = (boundary(tasks.start), boundary(tasks.end));
-        if first == end {
+        if first == end || sweep.target.next_cell(first, end) == end {
             return;
         }
         if tasks.len() == 1 {

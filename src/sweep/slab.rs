@@ -57,7 +57,16 @@ impl<R: Real, P: Pass<R, D>, const D: usize> Task<R> for Slab<'_, '_, R, P, D> {
             hits: [hits, _],
             ..
         } = &mut *self.workspace;
-        for cell in self.cells.clone() {
+        let mut next = self.cells.start;
+        loop {
+            let cell = target.next_cell(next, self.cells.end);
+            if cell >= self.cells.end {
+                break;
+            }
+            next = cell + 1;
+            if target.cells.particles(cell, cell + 1).is_empty() {
+                continue;
+            }
             let mut frame: Option<[f64; D]> = None;
             for part in (0..Grid::<D>::PARTS).step_by(self.parts_per_cluster) {
                 let particles = target.cells.bins(cell, part, part + self.parts_per_cluster);
