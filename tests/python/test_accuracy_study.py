@@ -185,6 +185,12 @@ def test_spacings_of_a_ladder_divide_the_fluid() -> None:
     assert snapped(scene, 0.0301) == pytest.approx(1.0 / 33)
 
 
+def test_where_coarser_spacings_do_not_fit_a_ladder_goes_finer() -> None:
+    # A period must hold two supports: of these spacings 0.2 and 0.14 m are too coarse for it.
+    scene = kolk.load("taylor-green").replace(spacing=0.1)
+    assert [round(1.0 / h) for h in default_spacings(scene)] == [10, 14, 20, 28]
+
+
 def test_a_key_depends_on_everything_that_changes_a_run() -> None:
     scene = small()
     keys = {

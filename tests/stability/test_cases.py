@@ -22,7 +22,7 @@ MISSED = {
 def marked(name: str, variant: str) -> object:
     """The case, said to miss its limits where it does."""
     part, why = MISSED.get(name, ("", ""))
-    marks = [pytest.mark.xfail(reason=why, strict=False)] if why and part in variant else []
+    marks = [pytest.mark.xfail(reason=why)] if why and part in variant else []
     return pytest.param(name, variant, marks=marks)
 
 

@@ -22,8 +22,11 @@ if TYPE_CHECKING:
 RATIO = math.sqrt(2.0)
 """Between neighbouring spacings: half the square root of the cost of a halving, in 2D."""
 
-DEFAULT_RUNGS = (2, 1, 0, -1)
-"""Spacings of a study over the scene's own, as powers of RATIO."""
+LEVELS = 4
+"""An order needs three levels, and its interval a fourth."""
+
+DEFAULT_RUNGS = (2, 1, 0, -1, -2, -3)
+"""Spacings of a study over the scene's own, as powers of RATIO: the first four that fit."""
 
 DEFAULT = "as it is"
 """Label of the scene without any alternative."""
@@ -60,9 +63,15 @@ def full_key(key: str, value: Any) -> str:
 
 
 def default_spacings(scene: Scene) -> list[float]:
-    """Four spacings around the scene's own, from coarse to fine; see `snapped`."""
+    """Four spacings around the scene's own, from coarse to fine; see `snapped`.
+
+    A scene that is too narrow for the coarse ones (a period needs room for two supports) is
+    studied at finer ones instead: a shorter ladder could say nothing of the order.
+    """
     chosen: list[float] = []
     for power in DEFAULT_RUNGS:
+        if len(chosen) == LEVELS:
+            break
         spacing = snapped(scene, scene.spacing * RATIO**power)
         if all(abs(spacing / other - 1.0) > 0.05 for other in chosen) and fits(scene, spacing):
             chosen.append(spacing)

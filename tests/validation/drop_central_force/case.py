@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -11,7 +12,7 @@ import numpy as np
 import kolk
 from kolk.references import oscillating_drop, oscillating_drop_period
 
-from ..running import counts, simulation
+from ..running import FloatArray, counts, simulation
 from ..stretching_drop.case import semi_axes
 from ..suite import Case, Figure, Level
 
@@ -44,6 +45,13 @@ def scene(resolution: int) -> kolk.Scene:
     )
 
 
+def stepped(plain: kolk.Scene) -> kolk.Scene:
+    """The scene with a fixed step: half a step of force, a step of the fluid, half a step of force
+    are of second order in time."""
+    step = 0.4 * plain.smoothing_length / plain.sound_speed
+    return plain.replace({"numerics.time_step": PERIOD / math.ceil(PERIOD / step)})
+
+
 def kick(sim: kolk.Simulation, duration: float) -> None:
     """Lets the force -B² r act for ``duration`` (s): a scene knows uniform gravity only."""
     state = sim.state()
@@ -60,38 +68,65 @@ def energy(sim: kolk.Simulation) -> float:
     return sim.energy.total + outer
 
 
-def run(resolution: int) -> Level:
-    plain = scene(resolution)
-    # half a step of force, a step of the fluid, half a step of force: second order in time
-    step = 0.4 * plain.smoothing_length / plain.sound_speed
-    steps = math.ceil(plain.until / step)
-    step = plain.until / steps
-    sim = simulation(plain.replace({"numerics.time_step": step}))
+@dataclass
+class Oscillation:
+    """A drop that has oscillated."""
+
+    sim: kolk.Simulation
+    record: FloatArray
+    """(n, 3) time (s) and both semi-axes over those at the start."""
+    axes: float
+    """Largest error of a semi-axis, as a share."""
+    period: float
+    """Error of the period, as a share."""
+    lost: float
+    """Share of its energy that it lost in each period."""
+
+
+def oscillate(
+    sim: kolk.Simulation, periods: int, look: Callable[[], object] = lambda: None
+) -> Oscillation:
+    """Lets the drop of `scene` oscillate; ``look`` is called after each period."""
+    step = sim.scene.numerics.time_step
+    assert step is not None
+    steps = round(periods * PERIOD / step)
     drop = sim.bodies["drop"]
-    start, whole = semi_axes(drop) / RADIUS, energy(sim)
+    round_axes, whole = semi_axes(drop) / RADIUS, energy(sim)
     kick(sim, 0.5 * step)
-    records = [(0.0, *(semi_axes(drop) / start))]
-    every = max(1, steps // 400)
+    records = [(0.0, *(semi_axes(drop) / round_axes))]
+    every, beat = max(1, steps // (200 * periods)), steps // periods
     for taken in range(1, steps + 1):
         sim.advance_to(taken * step)
         kick(sim, step if taken < steps else 0.5 * step)
         if taken % every == 0:
-            records.append((sim.time, *(semi_axes(drop) / start)))
+            records.append((sim.time, *(semi_axes(drop) / round_axes)))
+        if taken % beat == 0:
+            look()
     record = np.array(records)
     exact = oscillating_drop(record[:, 0], radius=RADIUS, rate=RATE, force=FORCE)
     error = np.maximum(np.abs(record[:, 1] / exact.x - 1.0), np.abs(record[:, 2] / exact.y - 1.0))
-    judged = resolution == 50
-    lost = (1.0 - energy(sim) / whole) / PERIODS
-    figures = (
-        Figure("semi-axes, worst", float(error.max()), None, 0.01 if judged else None, "%"),
-        Figure("period", abs(period(record) / PERIOD - 1.0), None, 0.005 if judged else None, "%"),
-        Figure("energy lost a period", abs(lost), None, 0.01 if judged else None, "%"),
+    return Oscillation(
+        sim,
+        record,
+        float(error.max()),
+        abs(period(record) / PERIOD - 1.0),
+        abs(1.0 - energy(sim) / whole) / periods,
     )
-    curves = {"axes": record, "drop": drop.arrays()}
-    return Level(resolution, figures, **counts(sim), curves=curves)
 
 
-def period(record: np.ndarray) -> float:
+def run(resolution: int) -> Level:
+    found = oscillate(simulation(stepped(scene(resolution))), PERIODS)
+    judged = resolution == 50
+    figures = (
+        Figure("semi-axes, worst", found.axes, None, 0.01 if judged else None, "%"),
+        Figure("period", found.period, None, 0.005 if judged else None, "%"),
+        Figure("energy lost a period", found.lost, None, 0.01 if judged else None, "%"),
+    )
+    curves = {"axes": found.record, "drop": found.sim.bodies["drop"].arrays()}
+    return Level(resolution, figures, **counts(found.sim), curves=curves)
+
+
+def period(record: FloatArray) -> float:
     """Period (s) from the times at which the axes are equal: a = b twice a period, downwards."""
     time, ratio = record[:, 0], np.log(record[:, 1] / record[:, 2])
     after = np.flatnonzero((ratio[1:-1] >= 0.0) & (ratio[2:] < 0.0)) + 1

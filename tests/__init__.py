@@ -1,0 +1,1 @@
+"""The regression tests: Python, validation, stability, and what accuracy costs."""
