@@ -1,13 +1,11 @@
 //! A pair term in sweeps of its own: how an effect that few scenes call for is written as a term and costs no variant of
 //! the sweep of forces.
 
-use super::stage::{Around, Stage, sweep};
+use super::stage::{Around, Stage, Touch, sweep};
 use super::{Declaration, PairTerm};
 use crate::particles::Fluid;
 use crate::simd::{Lanes, Real};
-use crate::sweep::{
-    Other, Output, Own, Pair, Pass, SLOTS, Single, Source, Splat, Sums, Tally, slot,
-};
+use crate::sweep::{Other, Output, Own, Pair, Pass, Source, Splat, Sums, Tally, slot};
 
 /// The force density of a pair term between fluid particles, and between fluid and wall, added to the acceleration.
 pub struct Added<T> {
@@ -71,20 +69,10 @@ where
         }
     }
 
-    fn longest_step(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn reaction(
-        &self,
-        single: &Single<D>,
-        separation: &[f64; D],
-        wall: &[f64; SLOTS],
-        fluid: &[f64; SLOTS],
-        _: usize,
-    ) -> [f64; D] {
+    fn reaction(&self, at: &Touch<D>) -> [f64; D] {
         if self.at_walls {
-            single.vector(&self.term, separation, wall, fluid)
+            at.single
+                .vector(&self.term, at.separation, at.wall, at.fluid)
         } else {
             [0.0; D]
         }

@@ -1,6 +1,6 @@
 //! Forces of a liquid on itself, freed of what they would add to its momentum.
 
-use crate::particles::{Column, Shared, for_ranges, sum};
+use crate::particles::{Column, Shared, for_each_range, sum};
 use crate::simd::Real;
 use crate::step::projection::{coefficients, freed, rigid_motions};
 
@@ -57,23 +57,15 @@ fn project<R: Real, const D: usize, const K: usize>(
         rigid_motions(&x)
     };
     let coefficients = coefficients(n, |i| mass[i].to_f64(), of, fields);
-    let to: [Shared<R>; D] = {
-        let mut columns = acceleration.iter_mut();
-        std::array::from_fn(|_| Shared::new(columns.next().expect("as many as dimensions")))
-    };
-    for_ranges(
-        n,
-        || (),
-        |(), ()| (),
-        |range| {
-            // SAFETY: the ranges of a pass are disjoint.
-            let to = to.map(|c| unsafe { c.range(&range) });
-            for (k, i) in range.enumerate() {
-                let force = freed(of(i), || fields(i), &coefficients);
-                for a in 0..D {
-                    to[a][k] += R::from_f64(force[a]);
-                }
+    let to = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut acceleration[a]));
+    for_each_range(n, |range| {
+        // SAFETY: the ranges of a pass are disjoint.
+        let to = to.map(|c| unsafe { c.range(&range) });
+        for (k, i) in range.enumerate() {
+            let force = freed(of(i), || fields(i), &coefficients);
+            for a in 0..D {
+                to[a][k] += R::from_f64(force[a]);
             }
-        },
-    );
+        }
+    });
 }

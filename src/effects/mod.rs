@@ -42,7 +42,7 @@ pub use particle_shifting::{
 pub use pressure::{PRESSURE, Pressure};
 pub use riemann::{RIEMANN_VISCOSITY, RiemannDiffusion, RiemannViscosity, fastest_diffusion};
 pub use shear_rate::ShearRate;
-pub use stage::{Around, Stage};
+pub use stage::{Around, Stage, Touch};
 pub use surface_tension::{SURFACE_TENSION, SurfaceTension};
 pub use tensile_control::{TENSILE_CONTROL, TensileControl, TensileStage};
 pub use transport::{Carry, Transport};

@@ -8,7 +8,9 @@ use crate::kernel::KernelName;
 use crate::neighbours::Grid;
 use crate::particles::{Column, Fluid, Wall};
 use crate::simd::Real;
-use crate::sweep::{Output, Pass, SLOTS, Single, Source, Sweep, Sweeper};
+use crate::sweep::{
+    Output, PairPass, Pairs, Pass, SLOTS, Single, Source, SumColumns, Sweep, Sweeper,
+};
 
 /// The particles and what sweeps need.
 pub struct Around<'a, R, const D: usize> {
@@ -24,6 +26,20 @@ pub struct Around<'a, R, const D: usize> {
     pub wall: Option<&'a Wall<R, D>>,
 }
 
+/// A wall particle with a fluid particle in reach.
+pub struct Touch<'a, const D: usize> {
+    /// Evaluates a pair term for one pair.
+    pub single: &'a Single<D>,
+    /// `r_wall - r_fluid` in m.
+    pub separation: &'a [f64; D],
+    /// Fields of the wall particle.
+    pub wall: &'a [f64; SLOTS],
+    /// Fields of the fluid particle.
+    pub fluid: &'a [f64; SLOTS],
+    /// The fluid particle.
+    pub j: usize,
+}
+
 /// An effect with sweeps of its own.
 pub trait Stage<R: Real, const D: usize>: Send + Sync {
     /// What it is.
@@ -32,25 +48,39 @@ pub trait Stage<R: Real, const D: usize>: Send + Sync {
     /// Adds to the acceleration of the fluid, behind the sweep of forces.
     fn run(&mut self, around: Around<R, D>);
 
-    /// The longest stable time step in s, as of the last run.
-    fn longest_step(&self) -> f64;
+    /// The longest stable time step in s, as of the last run; infinite where it sets no limit.
+    fn longest_step(&self) -> f64 {
+        f64::INFINITY
+    }
 
-    /// The force per volume of a wall particle with the fields `wall` by the fluid particle `j` with the fields `fluid`, at
-    /// `separation = r_wall - r_fluid` in reach: the reaction to what the stage does to the fluid there.
-    fn reaction(
-        &self,
-        single: &Single<D>,
-        separation: &[f64; D],
-        wall: &[f64; SLOTS],
-        fluid: &[f64; SLOTS],
-        j: usize,
-    ) -> [f64; D];
+    /// The force per volume of a wall particle by a fluid particle: the reaction to what the stage does to the fluid there,
+    /// none where walls take no part.
+    fn reaction(&self, _at: &Touch<D>) -> [f64; D] {
+        [0.0; D]
+    }
 
     /// Puts what it keeps of each particle in the order of the fluid, which was sorted within a step.
     fn follow(&mut self, _fluid: &mut Fluid<R, D>) {}
 
     /// Bytes held.
     fn bytes(&self) -> usize;
+}
+
+/// Runs a pass of a stage over pairs of `fluid`, with the walls around.
+pub(super) fn sweep_pairs<R: Real, P: PairPass<R, D>, const D: usize>(
+    (grid, sweeper, kernel): (&Grid<D>, &Sweeper<R>, KernelName),
+    fluid: &Source<R, D>,
+    wall: Option<&Source<R, D>>,
+    pass: &P,
+    columns: &SumColumns<R>,
+) {
+    let pairs = Pairs {
+        grid,
+        fluid,
+        wall,
+        pass,
+    };
+    sweeper.run_pairs(kernel, &pairs, columns);
 }
 
 /// Runs a pass of a stage from `source` to `target`; `columns` are those that it writes, in its order.

@@ -2,15 +2,14 @@
 //! support (Brackbill, Kothe & Zemach 1992), in three sweeps: normals, curvature, force.
 
 use super::inner_forces::accelerate_freely;
-use super::stage::{Around, Stage, sweep};
+use super::stage::{Around, Stage, sweep, sweep_pairs};
 use super::{Declaration, Quantity};
 use crate::kernel::KernelName;
-use crate::particles::{Column, Fluid, Shared, for_ranges};
+use crate::particles::{Column, Fluid, Shared, for_each_range};
 use crate::simd::{Lanes, Real, dot};
 use crate::step::Limit;
 use crate::sweep::{
-    Other, Output, Own, Pair, PairPass, Pairs, Pass, SLOTS, Single, Source, Splat, SumColumns,
-    Sums, Tally, Uses, slot,
+    Other, Output, Own, Pair, PairPass, Pass, Source, Splat, SumColumns, Sums, Tally, Uses, slot,
 };
 use std::f64::consts::PI;
 
@@ -32,7 +31,7 @@ const TABLE: usize = 64;
 /// surface is a function of the depth, gives the depth `s`; the curvature `∇·n` of the normals (Morris 2000; renormalised,
 /// of particles near the surface) belongs to a surface parallel to the true one, and is taken to it, `1/κ = 1/∇·n + s`.
 /// It is averaged over the particles around, with the square of the kernel. What the forces would add to momentum and angular
-/// momentum is taken from them ([`accelerate_freely`]): they are the liquid's on itself.
+/// momentum is taken from them ([`accelerate_freely`]): they are the liquid's on itself. It does not wet walls, which take no part.
 pub struct SurfaceTension<R, const D: usize> {
     normal: [Column<R>; D],
     /// Length of the offset over that at a plane surface.
@@ -126,25 +125,17 @@ impl<R: Real, const D: usize> Stage<R, D> for SurfaceTension<R, D> {
             ..
         } = around.fluid;
         let liquid = Source::new(position, cells).with(slot::VOLUME, volume);
-        let pairs = Pairs {
-            grid: around.grid,
-            fluid: &liquid,
-            wall: None,
-            pass: &self.outwards,
-        };
         let columns = SumColumns::default()
             .scalar(&mut self.nearness)
             .vector(self.normal.iter_mut().map(|c| &mut c[..]));
-        around.sweeper.run_pairs(around.kernel, &pairs, &columns);
+        sweep_pairs(with, &liquid, None, &self.outwards, &columns);
         self.outwards.measure(&self.nearness, &mut self.depth);
-        let surface = Source::new(position, cells)
-            .with(slot::VOLUME, volume)
+        let surface = liquid
             .with(slot::NEARNESS, &self.nearness)
             .with(slot::RATE, &self.depth)
             .with_vector(slot::GRADIENT, &self.normal);
         sweep(with, &surface, &surface, &self.bend, [&mut self.curvature]);
-        let curved = Source::new(position, cells)
-            .with(slot::VOLUME, volume)
+        let curved = liquid
             .with(slot::NEARNESS, &self.nearness)
             .with(slot::CONDENSATION, condensation)
             .with(slot::RATE, &self.curvature);
@@ -156,18 +147,6 @@ impl<R: Real, const D: usize> Stage<R, D> for SurfaceTension<R, D> {
 
     fn longest_step(&self) -> f64 {
         self.longest_step
-    }
-
-    fn reaction(
-        &self,
-        _: &Single<D>,
-        _: &[f64; D],
-        _: &[f64; SLOTS],
-        _: &[f64; SLOTS],
-        _: usize,
-    ) -> [f64; D] {
-        // The liquid does not wet walls: they take no part.
-        [0.0; D]
     }
 
     fn bytes(&self) -> usize {
@@ -196,21 +175,16 @@ impl Outwards {
     fn measure<R: Real>(&self, nearness: &Column<R>, depth: &mut Column<R>) {
         let n = nearness.len();
         let to = Shared::new(depth);
-        for_ranges(
-            n,
-            || (),
-            |(), ()| (),
-            |range| {
-                // SAFETY: the ranges of a pass are disjoint.
-                let to = unsafe { to.range(&range) };
-                for (s, q) in to.iter_mut().zip(&nearness[range]) {
-                    let place = (1.0 - q.to_f64()).clamp(0.0, 1.0).sqrt() * TABLE as f64;
-                    let k = (place as usize).min(TABLE - 1);
-                    let [near, far] = [self.depths[k], self.depths[k + 1]];
-                    *s = R::from_f64(near + (far - near) * (place - k as f64));
-                }
-            },
-        );
+        for_each_range(n, |range| {
+            // SAFETY: the ranges of a pass are disjoint.
+            let to = unsafe { to.range(&range) };
+            for (s, q) in to.iter_mut().zip(&nearness[range]) {
+                let place = (1.0 - q.to_f64()).clamp(0.0, 1.0).sqrt() * TABLE as f64;
+                let k = (place as usize).min(TABLE - 1);
+                let [near, far] = [self.depths[k], self.depths[k + 1]];
+                *s = R::from_f64(near + (far - near) * (place - k as f64));
+            }
+        });
     }
 }
 

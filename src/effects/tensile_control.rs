@@ -4,13 +4,12 @@
 //! voids (Swegle, Hicks & Attaway 1995). The difference `p_j - p_i` has no such pull, and is as good a gradient wherever
 //! particles are surrounded; at a free surface it would hold the fluid to nothing.
 
-use super::stage::{Around, Stage};
+use super::stage::{Around, Stage, Touch, sweep_pairs};
 use super::{Declaration, PairTerm, Quantity};
-use crate::particles::{Column, Fluid, Shared, for_ranges};
+use crate::particles::{Column, Fluid, Shared, for_each_range};
 use crate::simd::{Lanes, Real};
 use crate::sweep::{
-    Other, Own, Pair, PairPass, Pairs, SLOTS, Single, Source, Splat, SumColumns, Sums, Tally, Uses,
-    slot,
+    Other, Own, Pair, PairPass, Source, Splat, SumColumns, Sums, Tally, Uses, slot,
 };
 
 /// Least eigenvalue of the moment matrix from which a particle is away from a free surface (Marrone et al. 2010; Sun et
@@ -146,6 +145,7 @@ impl<R: Real, const D: usize> Stage<R, D> for TensileStage<R> {
     }
 
     fn run(&mut self, around: Around<R, D>) {
+        let with = (around.grid, around.sweeper, around.kernel);
         let Fluid {
             position,
             cells,
@@ -168,47 +168,25 @@ impl<R: Real, const D: usize> Stage<R, D> for TensileStage<R> {
             .scalar(&mut self.tension)
             .vector(push.iter_mut().map(|c| &mut c[..]))
             .moment(moment.iter_mut().map(|c| &mut c[..]));
-        let pairs = Pairs {
-            grid: around.grid,
-            fluid: &source,
-            wall: wall.as_ref(),
-            pass: &self.control,
-        };
-        around.sweeper.run_pairs(around.kernel, &pairs, &columns);
+        sweep_pairs(with, &source, wall.as_ref(), &self.control, &columns);
         let push: &[Column<R>] = push;
         let n = volume.len();
         for (to, from) in acceleration.iter_mut().zip(push) {
             let to = Shared::new(to);
-            for_ranges(
-                n,
-                || (),
-                |(), ()| (),
-                |range| {
-                    // SAFETY: the ranges of a pass are disjoint.
-                    let to = unsafe { to.range(&range) };
-                    for (a, b) in to.iter_mut().zip(&from[range]) {
-                        *a += *b;
-                    }
-                },
-            );
+            for_each_range(n, |range| {
+                // SAFETY: the ranges of a pass are disjoint.
+                let to = unsafe { to.range(&range) };
+                for (a, b) in to.iter_mut().zip(&from[range]) {
+                    *a += *b;
+                }
+            });
         }
     }
 
-    fn longest_step(&self) -> f64 {
-        f64::INFINITY
-    }
-
-    fn reaction(
-        &self,
-        single: &Single<D>,
-        separation: &[f64; D],
-        wall: &[f64; SLOTS],
-        fluid: &[f64; SLOTS],
-        j: usize,
-    ) -> [f64; D] {
-        let mut fluid = *fluid;
-        fluid[slot::PRESSURE] = self.tension[j].to_f64();
-        single.vector(&AtWall, separation, wall, &fluid)
+    fn reaction(&self, at: &Touch<D>) -> [f64; D] {
+        let mut fluid = *at.fluid;
+        fluid[slot::PRESSURE] = self.tension[at.j].to_f64();
+        at.single.vector(&AtWall, at.separation, at.wall, &fluid)
     }
 
     fn follow(&mut self, fluid: &mut Fluid<R, D>) {

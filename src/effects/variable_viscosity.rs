@@ -1,12 +1,11 @@
 //! The stage of liquids whose viscosity depends on the flow: rate of shear, viscosity, friction.
 
-use super::stage::{Around, Stage, sweep};
+use super::stage::{Around, Stage, Touch, sweep};
 use super::{Declaration, PairTerm, ShearRate};
 use crate::particles::{Column, Fluid, Shared, for_ranges};
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{
-    Other, Output, Own, Pair, Pass, SLOTS, Single, Source, Splat, Sums, Tally, Uses,
-    relative_velocity, slot,
+    Other, Output, Own, Pair, Pass, Source, Splat, Sums, Tally, Uses, relative_velocity, slot,
 };
 
 /// What keeps `1/r²` finite for coincident particles, in `h²`, as in the laminar forms.
@@ -111,11 +110,9 @@ impl<R: Real, M: Rheology, const D: usize> Stage<R, D> for VariableViscosity<R, 
             .with_vector(slot::VELOCITY, pair_velocity);
         sweep(with, &flow, &flow, &ShearRate, [&mut self.viscosity]);
         self.largest = self.thicken();
-        let fluid = Source::new(position, cells)
-            .with(slot::VOLUME, volume)
+        let fluid = flow
             .with(slot::CONDENSATION, condensation)
-            .with(slot::VISCOSITY, &self.viscosity)
-            .with_vector(slot::VELOCITY, pair_velocity);
+            .with(slot::VISCOSITY, &self.viscosity);
         sweep(
             with,
             &fluid,
@@ -138,22 +135,16 @@ impl<R: Real, M: Rheology, const D: usize> Stage<R, D> for VariableViscosity<R, 
         SHARE / (kinematic * self.fastest_decay)
     }
 
-    fn reaction(
-        &self,
-        single: &Single<D>,
-        separation: &[f64; D],
-        wall: &[f64; SLOTS],
-        fluid: &[f64; SLOTS],
-        j: usize,
-    ) -> [f64; D] {
+    fn reaction(&self, at: &Touch<D>) -> [f64; D] {
         if !self.no_slip {
             return [0.0; D];
         }
         // A wall has the viscosity of the fluid at it.
-        let (mut wall, mut fluid) = (*wall, *fluid);
-        wall[slot::VISCOSITY] = self.viscosity[j].to_f64();
-        fluid[slot::VISCOSITY] = self.viscosity[j].to_f64();
-        single.vector(&self.friction, separation, &wall, &fluid)
+        let (mut wall, mut fluid) = (*at.wall, *at.fluid);
+        wall[slot::VISCOSITY] = self.viscosity[at.j].to_f64();
+        fluid[slot::VISCOSITY] = self.viscosity[at.j].to_f64();
+        at.single
+            .vector(&self.friction, at.separation, &wall, &fluid)
     }
 
     fn follow(&mut self, fluid: &mut Fluid<R, D>) {

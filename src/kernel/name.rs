@@ -70,7 +70,7 @@ impl KernelName {
     /// `W(r, h)` [m^-D] in `dimension` 1, 2 or 3; zero beyond the support.
     ///
     /// # Panics
-    /// In any other dimension.
+    /// In any other dimension: what users give is checked before (`kolk.kernel`), the engine has two and three.
     pub fn value(self, dimension: usize, r: f64, h: f64) -> f64 {
         match dimension {
             1 => Scaled::<1>::new(self, h).value(r),
@@ -83,7 +83,7 @@ impl KernelName {
     /// `dW/dr (r, h)` [m^-(D+1)] in `dimension` 1, 2 or 3; zero beyond the support, negative inside.
     ///
     /// # Panics
-    /// In any other dimension.
+    /// In any other dimension: what users give is checked before (`kolk.kernel`), the engine has two and three.
     pub fn gradient(self, dimension: usize, r: f64, h: f64) -> f64 {
         r * match dimension {
             1 => Scaled::<1>::new(self, h).slope_over_r(r),

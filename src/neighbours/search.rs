@@ -290,10 +290,9 @@ fn lay_axes<const D: usize>(
     }
     let budget = position.len().clamp(64, 1 << 30) as f64;
     while axes.iter().map(|axis| axis.count as f64).product::<f64>() > budget {
-        let widest = axes
-            .iter_mut()
-            .max_by_key(|axis| axis.count)
-            .expect("D is positive");
+        let Some(widest) = axes.iter_mut().max_by_key(|axis| axis.count) else {
+            break;
+        };
         // An odd number of cells, lest a lattice of points folds onto few of them.
         let half = widest.count / 2;
         widest.resize(if widest.period == 0.0 && half > 2 {

@@ -1,7 +1,8 @@
 //! The particles of a fluid.
 
 use super::{
-    Column, Given, Shared, StageColumns, component, for_ranges, permute, rounded, vector_columns,
+    Column, Given, Shared, StageColumns, component, for_each_range, permute, rounded,
+    vector_columns,
 };
 use crate::neighbours::{Cells, Grid, Sorter};
 use crate::simd::Real;
@@ -114,22 +115,17 @@ impl<R: Real, const D: usize> Fluid<R, D> {
                 stages.wrap_along(&self.position, grid);
             }
             let position = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut self.position[a]));
-            for_ranges(
-                self.id.len(),
-                || (),
-                |(), ()| (),
-                |range| {
-                    // SAFETY: the ranges of a pass are disjoint.
-                    let x = position.map(|p| unsafe { p.range(&range) });
-                    for i in 0..range.len() {
-                        let mut at = std::array::from_fn(|a| x[a][i]);
-                        grid.wrap(&mut at);
-                        for a in 0..D {
-                            x[a][i] = at[a];
-                        }
+            for_each_range(self.id.len(), |range| {
+                // SAFETY: the ranges of a pass are disjoint.
+                let x = position.map(|p| unsafe { p.range(&range) });
+                for i in 0..range.len() {
+                    let mut at = std::array::from_fn(|a| x[a][i]);
+                    grid.wrap(&mut at);
+                    for a in 0..D {
+                        x[a][i] = at[a];
                     }
-                },
-            );
+                }
+            });
         }
         let position = &self.position;
         self.sorter.sort(&mut self.cells, |i| {

@@ -10,7 +10,7 @@ mod wall;
 pub use column::{Column, PAD};
 pub use fluid::{Fluid, OptionalColumns};
 pub use moving::Moving;
-pub use parallel::{GRAIN, Shared, for_ranges, permute, sum};
+pub use parallel::{GRAIN, Shared, for_each_range, for_ranges, permute, sum};
 pub use stage_columns::{StageColumns, StateColumns};
 pub use wall::Wall;
 

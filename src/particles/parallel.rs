@@ -67,6 +67,12 @@ pub fn for_ranges<T: Send>(
         .reduce(identity, join)
 }
 
+/// Runs `work` over `0..n` in ranges of [`GRAIN`].
+#[inline(always)]
+pub fn for_each_range(n: usize, work: impl Fn(Range<usize>) + Sync + Send) {
+    for_ranges(n, || (), |(), ()| (), work);
+}
+
 /// Reorders `column` so that its `k`-th entry is the former `order[k]`-th, by way of `scratch`.
 pub fn permute<T: Copy + Send + Sync>(column: &mut [T], order: &[u32], scratch: &mut [T]) {
     scratch

@@ -89,7 +89,8 @@ pub fn force_level(level: Level) {
 #[cfg_attr(kolk_avx2_only, allow(clippy::needless_return))]
 #[inline]
 pub fn dispatch<R: Real, T: Task<R>>(task: T) -> T::Output {
-    // A third of the code to compile, for whoever works on the engine (CONTRIBUTING.md).
+    // A third of the code to compile, for whoever works on the engine (CONTRIBUTING.md): no build for users has it, nor what
+    // panics here.
     #[cfg(kolk_avx2_only)]
     if level() >= Level::Avx2 {
         // SAFETY: as below.

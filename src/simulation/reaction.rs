@@ -2,7 +2,7 @@
 
 use super::config::ViscosityForm;
 use super::solver::Solver;
-use crate::effects::{Contact, MonaghanGingold, Morris, PairTerm, Pressure};
+use crate::effects::{Contact, MonaghanGingold, Morris, PairTerm, Pressure, Touch};
 use crate::simd::Real;
 use crate::sweep::{SLOTS, Single, slot};
 use crate::walls::Slip;
@@ -63,11 +63,18 @@ impl<R: Real, const D: usize> Solver<R, D> {
                             if single.reaches(&d) {
                                 let other = self.fluid_fields(j);
                                 let f = single.vector(&terms, &d, &own, &other);
+                                let at = Touch {
+                                    single: &single,
+                                    separation: &d,
+                                    wall: &own,
+                                    fluid: &other,
+                                    j,
+                                };
                                 for a in 0..D {
                                     force[a] += f[a];
                                 }
                                 for stage in stages {
-                                    let f = stage.reaction(&single, &d, &own, &other, j);
+                                    let f = stage.reaction(&at);
                                     for a in 0..D {
                                         force[a] += f[a];
                                     }

@@ -1,7 +1,7 @@
 //! Giving particles what they find where a shift has moved them.
 
 use super::projection::{coefficients, freed, rigid_motions};
-use crate::particles::{Column, Fluid, Shared, for_ranges, sum};
+use crate::particles::{Column, Fluid, Shared, for_each_range, sum};
 use crate::simd::Real;
 
 /// Adds the changes of velocity (m/s) and of density over `reference_density` that a shift asks for, and leaves in their
@@ -30,27 +30,22 @@ pub fn take_along<R: Real, const D: usize>(
     let to = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut fluid.velocity[a]));
     let density = Shared::new(&mut fluid.density);
     let from = &*velocity;
-    for_ranges(
-        n,
-        || (),
-        |(), ()| (),
-        |range| {
-            for a in 0..D {
-                // SAFETY: the ranges of a pass are disjoint.
-                let to = unsafe { to[a].range(&range) };
-                for (v, change) in to.iter_mut().zip(&from[a][range.clone()]) {
-                    *v += change.to_f64();
-                }
+    for_each_range(n, |range| {
+        for a in 0..D {
+            // SAFETY: the ranges of a pass are disjoint.
+            let to = unsafe { to[a].range(&range) };
+            for (v, change) in to.iter_mut().zip(&from[a][range.clone()]) {
+                *v += change.to_f64();
             }
-            if let Some(change) = condensation {
-                // SAFETY: as above.
-                let to = unsafe { density.range(&range) };
-                for (rho, change) in to.iter_mut().zip(&change[range]) {
-                    *rho += reference_density * change.to_f64();
-                }
+        }
+        if let Some(change) = condensation {
+            // SAFETY: as above.
+            let to = unsafe { density.range(&range) };
+            for (rho, change) in to.iter_mut().zip(&change[range]) {
+                *rho += reference_density * change.to_f64();
             }
-        },
-    );
+        }
+    });
 }
 
 /// Frees changes of velocity of their momentum, and for `K > D` of their angular momentum.
@@ -88,20 +83,15 @@ fn conserve<R: Real, const D: usize, const K: usize>(
         fields,
     );
     let columns = std::array::from_fn::<_, D, _>(|a| Shared::new(&mut velocity[a]));
-    for_ranges(
-        n,
-        || (),
-        |(), ()| (),
-        |range| {
-            // SAFETY: the ranges of a pass are disjoint.
-            let parts = columns.map(|c| unsafe { c.range(&range) });
-            for (k, i) in range.enumerate() {
-                let change = std::array::from_fn(|a| parts[a][k].to_f64());
-                let change = freed(change, || fields(i), &found);
-                for a in 0..D {
-                    parts[a][k] = R::from_f64(change[a]);
-                }
+    for_each_range(n, |range| {
+        // SAFETY: the ranges of a pass are disjoint.
+        let parts = columns.map(|c| unsafe { c.range(&range) });
+        for (k, i) in range.enumerate() {
+            let change = std::array::from_fn(|a| parts[a][k].to_f64());
+            let change = freed(change, || fields(i), &found);
+            for a in 0..D {
+                parts[a][k] = R::from_f64(change[a]);
             }
-        },
-    );
+        }
+    });
 }

@@ -27,7 +27,7 @@ pub use sums::{ALONE, SumColumns, Sums, Tally, Uses};
 
 use crate::kernel::KernelName;
 use crate::neighbours::{CellSet, Cells, Grid};
-use crate::particles::{Column, for_ranges};
+use crate::particles::{Column, for_each_range};
 use crate::simd::{Lanes, Real, dispatch};
 use colours::{BlockOfCells, Blocks, Inhabited};
 use pairs::Block;
@@ -78,6 +78,7 @@ pub trait Pass<R: Real, const D: usize>: Sync {
 pub type Output<'a, R> = [&'a mut [R]; OUTPUTS];
 
 /// A set of particles as pairs see it.
+#[derive(Clone, Copy)]
 pub struct Source<'a, R, const D: usize> {
     /// Positions in m.
     pub position: &'a [Column<f64>; D],
@@ -204,7 +205,7 @@ impl<R: Real> Sweeper<R> {
     ) -> Totals {
         let n = pairs.fluid.position[0].len();
         let used = pairs.pass.uses().columns::<D>();
-        let each = |work: &(dyn Fn(Range<usize>) + Sync)| for_ranges(n, || (), |(), ()| (), work);
+        let each = |work: &(dyn Fn(Range<usize>) + Sync)| for_each_range(n, work);
         for c in 0..used.len() {
             assert!(!used[c] || !columns.0[c].is_null());
         }

@@ -4,7 +4,7 @@ use super::follow_pressure;
 use super::surface::Surface;
 use crate::eos::{AnyEos, EquationOfState};
 use crate::neighbours::{Cells, Grid, Sorter};
-use crate::particles::{Column, Shared, Wall, for_ranges, vector_columns};
+use crate::particles::{Column, Shared, Wall, for_each_range, vector_columns};
 use crate::prescribed::Pose;
 use crate::simd::{Lanes, Real, dot};
 use crate::sweep::{Other, Output, Own, Pair, Pass, Splat, Sums};
@@ -134,27 +134,22 @@ impl<R: Real, const D: usize> Ghosts<R, D> {
             .slip_velocity
             .as_mut()
             .map(|s| s.each_mut().map(|c| Shared::new(c)));
-        for_ranges(
-            self.owner.len(),
-            || (),
-            |(), ()| (),
-            |range| {
-                for k in range {
-                    let i = self.owner[k] as usize;
-                    // SAFETY: every wall particle has one node at most.
-                    unsafe {
-                        for (to, from) in to.iter().zip(&self.values) {
-                            to.write(i, from[k]);
-                        }
-                        if let (Some(to), Some(from)) = (&slip, &self.slip_velocity) {
-                            for a in 0..D {
-                                to[a].write(i, from[a][k]);
-                            }
+        for_each_range(self.owner.len(), |range| {
+            for k in range {
+                let i = self.owner[k] as usize;
+                // SAFETY: every wall particle has one node at most.
+                unsafe {
+                    for (to, from) in to.iter().zip(&self.values) {
+                        to.write(i, from[k]);
+                    }
+                    if let (Some(to), Some(from)) = (&slip, &self.slip_velocity) {
+                        for a in 0..D {
+                            to[a].write(i, from[a][k]);
                         }
                     }
                 }
-            },
-        );
+            }
+        });
     }
 
     /// Bytes held.

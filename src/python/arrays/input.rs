@@ -59,6 +59,7 @@ impl<'py> Numbers<'py> {
 
     /// All numbers, in C order.
     pub(super) fn values(&self) -> &[f64] {
+        // `read`, which alone makes one, asks NumPy for C order: no array of a caller gets here otherwise.
         self.array.as_slice().expect("it was made contiguous")
     }
 
@@ -204,7 +205,9 @@ pub(super) fn kernel_name(name: &str, object: Option<&Bound<'_, PyAny>>) -> PyRe
         return Ok(KernelName::default());
     };
     let found = word(name, Some(object), &KernelName::ALL.map(KernelName::as_str))?;
-    Ok(found.parse().expect("the name is one of the list"))
+    found
+        .parse()
+        .map_err(|unknown| wrong(name, unknown, "a kernel's name"))
 }
 
 /// One number where it is given, else `default`.
