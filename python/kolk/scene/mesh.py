@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import functools
 import math
+from abc import abstractmethod
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
@@ -44,12 +45,13 @@ class FromFile(Shape):
         default="inside", description='"outside": a vessel, whose inside the surface encloses'
     )
 
+    @abstractmethod
     def _signed(self, points: FloatArray) -> FloatArray:
         """Signed distance from the surface: negative on its inner side."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _corners(self) -> Bounds:
-        raise NotImplementedError
+        """Lowest and highest corner (D,) of the placed surface, m."""
 
     def _placed(self, points: FloatArray) -> FloatArray:
         """Points of the file in the scene, m."""

@@ -7,6 +7,7 @@ Python it may also be the shape itself, ``kolk.Box(from_=..., to=...)``. Lengths
 from __future__ import annotations
 
 import math
+from abc import abstractmethod
 from typing import Literal, NamedTuple
 
 import numpy as np
@@ -35,16 +36,16 @@ Side = Literal["left", "right", "bottom", "top", "front", "back"]
 class Shape(Model):
     """A solid: what :meth:`distance` says is the truth, the rest describes it."""
 
+    @abstractmethod
     def distance(self, points: FloatArray) -> FloatArray:
         """Signed distance (m,) of ``points`` (m, D) from the surface in m: negative inside."""
-        raise NotImplementedError
 
+    @abstractmethod
     def bounds(self, thickness: float = 0.0) -> Bounds:
         """Lowest and highest corner (D,) of a box around the shape.
 
         Of a tank, whose solid has no end, ``thickness`` (m) is kept beyond each closed face.
         """
-        raise NotImplementedError
 
     def size(self) -> float:
         """Area (2D) or volume (3D), exact or an upper bound."""
