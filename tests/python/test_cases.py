@@ -17,6 +17,7 @@ NAMES = (
     "dam-break-box",
     "dam-break-column",
     "dam-break-decourcy",
+    "dam-break-turbulent",
     "gearbox",
     "herschel-bulkley-channel",
     "mud",

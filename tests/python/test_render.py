@@ -98,6 +98,14 @@ def test_the_nearest_particle_owns_a_pixel() -> None:
     assert (outside == raster.EMPTY).all()
 
 
+@pytest.mark.parametrize("radius", [0.4, 2.5, 6.0])
+def test_discs_on_the_rim_of_a_picture_are_cut_by_it(radius: float) -> None:
+    x, y = np.meshgrid(np.arange(-8.0, 20.0), np.arange(-8.0, 16.0))
+    for one in np.stack([x.ravel(), y.ravel()], axis=-1)[:, None]:
+        whole = raster.owners(one + 20.0, radius, 52, 48)
+        assert np.array_equal(raster.owners(one, radius, 12, 8), whole[20:28, 20:32])
+
+
 def test_painting_fills_a_lattice_and_leaves_the_rest_clear() -> None:
     view = raster.View(0.0, 1.0, 0.0, 0.5, 200, 100)
     x = lattice((0.0, 0.5), (0.0, 0.5))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -17,7 +18,10 @@ from . import style
 from .plane import Extent, Painter, extent
 from .quantity import Quantity, Scales, colour_range, quantity, spread, time_label
 
-LEFT, RIGHT, BOTTOM, TOP, GAP = 0.55, 0.2, 0.5, 1.2, 0.36
+LETTERS = 11.5
+"""Of a title, per inch."""
+
+LEFT, RIGHT, BOTTOM, TOP, GAP = 0.65, 0.2, 0.5, 1.2, 0.36
 """Margins of a sheet and the gap between its panels, inches."""
 
 
@@ -55,12 +59,23 @@ def panel(
         inner, tall = 7.0 * area.aspect, 7.0
         width = max(inner + LEFT + RIGHT, 4.0)
     # even pixel counts, as films want them
-    height = tall + 1.45
+    # The time stands to the right below the title, which has lines of its own.
+    lines = textwrap.wrap(title, int(LETTERS * width))
+    height = tall + 1.45 + 0.18 * len(lines)
     width, height = (2 * round(size * style.DPI / 2) / style.DPI for size in (width, height))
     made = style.figure(width, height)
     axes = made.add_axes((LEFT / width, 1.0 / height, inner / width, tall / height))
     _dress(axes, area)
-    axes.set_title(title)
+    axes.annotate(
+        "\n".join(lines),
+        (0.0, 1.0),
+        (0.0, 18.0),
+        xycoords="axes fraction",
+        textcoords="offset points",
+        va="bottom",
+        fontsize=10.0,
+        weight="bold",
+    )
     bar = made.add_axes((LEFT / width, 0.42 / height, min(3.2, inner) / width, 0.1 / height))
     colour_bar(made, bar, shown, shown_range)
     return made, axes

@@ -60,12 +60,14 @@ def owners(pixel: FloatArray, radius: float, width: int, height: int) -> npt.NDA
     nearer centre overwrites a farther one.
     """
     offsets = disc_offsets(radius)
-    pad = int(np.abs(offsets).max()) + 1
+    reach = int(np.abs(offsets).max())
     column = np.floor(pixel[:, 0]).astype(np.int64)
     row = np.floor(pixel[:, 1]).astype(np.int64)
     near = np.flatnonzero(
-        (column > -pad) & (column < width + pad - 1) & (row > -pad) & (row < height + pad - 1)
+        (column >= -reach) & (column < width + reach) & (row >= -reach) & (row < height + reach)
     )
+    # A disc whose centre is out of the picture by its reach extends as far again beyond that.
+    pad = 2 * reach + 1
     stride = width + 2 * pad
     canvas = np.full((height + 2 * pad) * stride, EMPTY, np.int32)
     label = near.astype(np.int32)
