@@ -29,6 +29,7 @@ CALLED_FOR: dict[str, dict[str, Any]] = {
     "Herschel-Bulkley": {WATER: MUD},
     "turbulence": {WATER: {"artificial": 0.02, "turbulence": 0.12}},
     "surface tension": {"fluid.water.surface_tension": 0.072},
+    "linear drag": {"fluid.water.drag": 2.0},
     "Riemann dissipation": {WATER: None, "numerics.scheme": "riemann"},
     "tensile control": {"numerics.tensile_control": "sun"},
     "artificial stress": {"numerics.tensile_control": "monaghan"},

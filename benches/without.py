@@ -86,6 +86,7 @@ EFFECTS: dict[str, tuple[Cut, ...]] = {
     "turbulence": (stage("turbulence"),),
     "Herschel-Bulkley": (stage("herschel_bulkley"),),
     "surface tension": (stage("surface_tension"),),
+    "linear drag": (stage("linear_drag"),),
     "Riemann dissipation": (
         stage("riemann_viscosity"),
         arm(RATES, "Some((DiffusionForm::Riemann, delta))"),

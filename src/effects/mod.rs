@@ -14,6 +14,7 @@ mod dissipation;
 mod herschel_bulkley;
 mod inner_forces;
 mod laminar_viscosity;
+mod linear_drag;
 mod particle_shifting;
 mod pressure;
 mod riemann;
@@ -36,6 +37,7 @@ pub use density_diffusion::{Antuono, DensityGradient, Fourtakas, Molteni, densit
 pub use dissipation::{Diffusion, Dissipation, Laminar, POWERS, WALL_POWER};
 pub use herschel_bulkley::{HerschelBulkley, HerschelBulkleyConfig};
 pub use laminar_viscosity::{LAMINAR_VISCOSITY, MonaghanGingold, Morris, fastest_decay};
+pub use linear_drag::LinearDrag;
 pub use particle_shifting::{
     Shift, Surroundings, lattice_concentration, particle_shifting, sun_strength,
 };

@@ -5,8 +5,8 @@ use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{
     ACOUSTIC_DAMPER, ARTIFICIAL_STRESS, ARTIFICIAL_VISCOSITY, Added, Around, ArtificialStress,
-    CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, PRESSURE, PairTerm,
-    RIEMANN_VISCOSITY, Rheology, RiemannViscosity, SURFACE_TENSION, Smagorinsky, Stage,
+    CONTACT, Declaration, GRAVITY, HerschelBulkley, LAMINAR_VISCOSITY, LinearDrag, PRESSURE,
+    PairTerm, RIEMANN_VISCOSITY, Rheology, RiemannViscosity, SURFACE_TENSION, Smagorinsky, Stage,
     SurfaceTension, TENSILE_CONTROL, TensileControl, TensileStage, VariableViscosity,
     density_diffusion, fastest_decay, particle_shifting,
 };
@@ -15,7 +15,7 @@ use crate::step::Limit;
 use crate::walls::{MOVING_WALLS, Slip, WALLS};
 
 /// Most stages that a scene may have.
-pub(super) const MOST_STAGES: usize = 5;
+pub(super) const MOST_STAGES: usize = 6;
 
 /// The effects with sweeps of their own that the configuration calls for: one line each.
 pub(super) fn stages<R: Real, const D: usize>(
@@ -39,6 +39,9 @@ pub(super) fn stages<R: Real, const D: usize>(
         let (kernel, rho) = ((c.kernel, c.smoothing_length), c.reference_density);
         Box::new(SurfaceTension::new(sigma, n, kernel, c.spacing, rho)) as Box<dyn Stage<R, D>>
     }));
+    add(c
+        .linear_drag
+        .map(|rate| Box::new(LinearDrag::new(rate)) as Box<dyn Stage<R, D>>));
     add(c.tensile_control.map(|t| match t.form {
         TensileForm::Sun => {
             let control = TensileControl::new(c.reference_density, t.free_surface);
@@ -102,6 +105,7 @@ pub(super) fn effects(c: &Config, walls: bool) -> Vec<(Declaration, bool)> {
         (HerschelBulkley::DECLARATION, c.herschel_bulkley.is_some()),
         (Smagorinsky::DECLARATION, c.turbulence.is_some()),
         (SURFACE_TENSION, c.surface_tension.is_some()),
+        (LinearDrag::DECLARATION, c.linear_drag.is_some()),
         (
             Declaration {
                 limit: riemann.then_some(Limit::Viscous),

@@ -62,6 +62,9 @@ pub struct Config {
     /// Surface tension in N/m.
     #[serde(default)]
     pub surface_tension: Option<f64>,
+    /// Rate in 1/s at which drag slows the fluid.
+    #[serde(default)]
+    pub linear_drag: Option<f64>,
     /// Density diffusion.
     #[serde(default)]
     pub density_diffusion: Option<DensityDiffusionConfig>,
@@ -320,6 +323,9 @@ impl Config {
         }
         if let Some(sigma) = self.surface_tension {
             positive("surface_tension", sigma)?;
+        }
+        if let Some(rate) = self.linear_drag {
+            positive("linear_drag", rate)?;
         }
         if let Some(d) = self.density_diffusion {
             not_negative("density_diffusion.delta", d.delta)?;

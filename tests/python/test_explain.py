@@ -80,6 +80,7 @@ CALLED_FOR = {
     "density diffusion": {"numerics.density_diffusion": "antuono"},
     "particle shifting": {"numerics.shifting": "sun"},
     "tensile control": {"numerics.tensile_control": "sun"},
+    "linear drag": {"fluid.water.drag": 2.0},
     "moving walls": {"wall.tank.motion": {"translate": {"velocity": [0.1, 0.0]}}},
 }
 """What calls for an effect."""

@@ -80,10 +80,13 @@ def _artificial(scene: Scene) -> str:
     return _chosen(automatic.artificial)(scene)
 
 
-def _surface_tension(scene: Scene) -> str:
-    value = scene.fluid[0].surface_tension
-    key = _key(scene, "surface_tension")
-    return f"left out: no {key}" if value is None else _asked(key, value)
+def _of_fluid(name: str) -> Callable[[Scene], str]:
+    def why(scene: Scene) -> str:
+        value = getattr(scene.fluid[0], name)
+        key = _key(scene, name)
+        return f"left out: no {key}" if value is None else _asked(key, value)
+
+    return why
 
 
 def _chosen(choose: Callable[[Scene], automatic.Choice | None]) -> Callable[[Scene], str]:
@@ -199,8 +202,15 @@ CATALOGUE: tuple[Entry, ...] = (
         "surface tension",
         "pulls a free surface together",
         "sweeps of its own",
-        _surface_tension,
+        _of_fluid("surface_tension"),
         _no("surface_tension"),
+    ),
+    Entry(
+        "linear drag",
+        "slows fluid in proportion to its velocity, as a porous bed does",
+        "a pass over the particles",
+        _of_fluid("drag"),
+        _no("linear_drag"),
     ),
     Entry(
         "density diffusion",

@@ -16,7 +16,7 @@ from .model import Scene
 from .motion import Gravity
 from .parts import Fluid, ForceProbe, FrontProbe, LevelProbe, Numerics, PressureProbe, Wall
 
-MATERIAL = ("density", "sound_speed", "viscosity", "surface_tension", "eos", "gamma")
+MATERIAL = ("density", "sound_speed", "viscosity", "surface_tension", "drag", "eos", "gamma")
 
 
 def check_consistency(scene: Scene) -> None:

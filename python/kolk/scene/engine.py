@@ -76,6 +76,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "turbulence": turbulence,
         "herschel_bulkley": yielding,
         "surface_tension": fluid.surface_tension,
+        "linear_drag": fluid.drag,
         "density_diffusion": diffusion,
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,

@@ -161,6 +161,11 @@ class Fluid(_Body):
     surface_tension: Positive | None = Field(
         default=None, description="of a free surface, N/m; leave it out for none"
     )
+    drag: Positive | None = Field(
+        default=None,
+        description="rate in 1/s at which a porous bed slows it, viscosity over permeability; "
+        "leave it out for none",
+    )
     velocity: Velocity | None = Field(
         default=None, description="at the start, m/s: numbers or expressions"
     )

@@ -29,6 +29,7 @@ density = 1000.0
 sound_speed = "auto"               # from the largest expected speed and depth
 viscosity = { artificial = 0.02 }  # and/or { laminar = 1e-6 }; leave it out and there is none
 # surface_tension = 0.072         # N/m, of a free surface
+# drag = 2.0                      # 1/s: slowed down as in a porous bed
 # velocity = [0.0, 0.0]            # numbers, or expressions such as ["0.1*y", 0.0]
 # pressure = "hydrostatic"         # or "zero", or an expression in Pa
 # arrangement = "packed"           # for curved and slanted shapes: relaxed, not on a lattice
