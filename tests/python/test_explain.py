@@ -168,6 +168,9 @@ FAULTS = {
         {"fluid.water.viscosity": {"artificial": 0.02, "laminar": 1e-9}}
     ),
     "laminar viscosity alone": tank().replace({"fluid.water.viscosity": {"laminar": 1e-9}}),
+    "laminar viscosity beside turbulence": tank().replace(
+        {"fluid.water.viscosity": {"laminar": 1e-9, "turbulence": 0.12}}
+    ),
     "laminar viscosity swamped": vortex().replace(
         {"fluid.fluid.viscosity": {"laminar": 1e-3, "artificial": 0.5}}
     ),
@@ -198,6 +201,11 @@ def test_advice_mends_what_it_names(fault):
     assert advice.setting
     mended = advise(scene.replace(advice.changes))
     assert advice.text not in [a.text for a in mended]
+
+
+def test_leaving_out_one_viscosity_keeps_the_others():
+    (advice,) = advise(FAULTS["laminar viscosity beside turbulence"])
+    assert advice.changes == {"fluid.water.viscosity.laminar": None}
 
 
 def test_a_scene_in_order_gets_no_advice():

@@ -85,9 +85,9 @@ def _unresolved_laminar(scene: Scene) -> Advice | None:
             f"the laminar viscosity of {nu:.2g} m^2/s is swamped by the artificial one, which acts "
             f"like {swamped:.2g} m^2/s"
         )
-    if viscosity.artificial is None:
-        return Advice("drop", "laminar viscosity", text, _all_fluids(scene, "viscosity", None))
-    return Advice("drop", "laminar viscosity", text, _all_fluids(scene, "viscosity.laminar", None))
+    alone = viscosity.artificial is None and viscosity.turbulence is None
+    key = "viscosity" if alone else "viscosity.laminar"
+    return Advice("drop", "laminar viscosity", text, _all_fluids(scene, key, None))
 
 
 def _swamping_artificial(scene: Scene) -> Advice | None:
