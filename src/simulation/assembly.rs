@@ -12,7 +12,7 @@ use crate::eos::{AnyEos, Linear, Tait};
 use crate::error::{Error, Result};
 use crate::kernel::KernelName;
 use crate::neighbours::{Cells, Grid};
-use crate::particles::{Column, OptionalColumns, Wall};
+use crate::particles::{Column, Given, OptionalColumns, Wall};
 use crate::prescribed::RigidMotion;
 use crate::simd::Real;
 use crate::step::Forces;
@@ -49,7 +49,11 @@ pub(super) fn slices<R: Real>(columns: &mut [Column<R>]) -> impl Iterator<Item =
 }
 
 /// The form of shifting asked for, and what it needs to know.
-pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm, Surroundings)> {
+pub(super) fn shifting<const D: usize>(
+    config: &Config,
+    fluid: &Given,
+    moving_walls: bool,
+) -> Option<(ShiftingForm, Surroundings)> {
     let (kernel, h, spacing) = (config.kernel, config.smoothing_length, config.spacing);
     config.shifting.map(|s| {
         let around = Surroundings {
@@ -58,6 +62,14 @@ pub(super) fn shifting<const D: usize>(config: &Config) -> Option<(ShiftingForm,
             spacing,
             concentration: lattice_concentration::<D>(kernel, h, spacing),
             free_surface: s.free_surface,
+            closed: (!s.free_surface && !moving_walls).then(|| {
+                fluid
+                    .mass
+                    .iter()
+                    .zip(&fluid.density)
+                    .map(|(m, d)| m / d)
+                    .sum()
+            }),
         };
         (s.form, around)
     })

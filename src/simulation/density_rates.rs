@@ -5,6 +5,7 @@ use super::config::{DiffusionForm, ShiftingForm};
 use super::solver::Solver;
 use super::timers::Phase;
 use crate::effects::{Antuono, Fourtakas, Molteni, PairTerm, RiemannDiffusion, Shift};
+use crate::particles::sum;
 use crate::simd::Real;
 use crate::step::{DensityRate, ShiftTerm, WallDensityRate};
 use crate::sweep::{Pairs, Source, SumColumns, slot};
@@ -59,12 +60,21 @@ impl<R: Real, const D: usize> Solver<R, D> {
     /// Shifting over a step of `dt` as if there were a shift in every one, if there is any.
     pub(super) fn shift_of_a_step(&self, dt: f64) -> Option<Shift> {
         let speed = self.state.speed;
-        self.shifting.map(|(form, around)| match form {
+        let (form, around) = self.shifting?;
+        let shift = match form {
             ShiftingForm::Sun | ShiftingForm::Consistent => Shift::sun::<D>(&around, speed, dt),
             ShiftingForm::Gentle => Shift::gentle::<D>(&around, speed, dt),
             ShiftingForm::Lind => Shift::lind::<D>(&around, speed, dt),
             ShiftingForm::TransportVelocity => {
                 Shift::transport_velocity::<D>(&around, speed, self.config.sound_speed, dt)
+            }
+        };
+        Some(match around.closed {
+            None => shift,
+            Some(closed) => {
+                let volume = &self.fluid.volume;
+                let [filled] = sum(volume.len(), |i| [volume[i].to_f64()]);
+                shift.keeping_volume(closed / filled - 1.0)
             }
         })
     }

@@ -125,6 +125,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
             wall.stages = Some(std::array::from_fn(|_| Column::new(density.len())));
         }
         let motions = super::assembly::motions(&config, &bodies)?;
+        let shifting = super::assembly::shifting::<D>(&config, fluid, !motions.is_empty());
         if let Some(set) = &mut set_of_walls
             && !motions.is_empty()
         {
@@ -151,7 +152,7 @@ impl<R: Real, const D: usize> Solver<R, D> {
                 fixed: config.time_step,
             },
             kernel: config.kernel,
-            shifting: super::assembly::shifting::<D>(&config),
+            shifting,
             transport: Changes::new(&config, fluid.mass.len()),
             fluid: Fluid::new(
                 fluid,
