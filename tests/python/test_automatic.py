@@ -193,7 +193,18 @@ def test_the_summary_and_the_last_words_of_a_run_name_the_choices(tank, monkeypa
 def test_the_kernel_follows_the_free_surface():
     assert tank().kernel == "wendland-c2"
     assert vortex().kernel == "wendland-c4"
+    assert cases.get("poiseuille").scene.kernel == "wendland-c4"
+    assert cases.get("herschel-bulkley-channel").scene.kernel == "wendland-c2"
     # Left open, it stays so: a surface that is added later changes it.
     assert vortex().replace({"numerics.free_surface": True}).kernel == "wendland-c2"
     assert vortex(kernel="quintic").replace({"numerics.free_surface": True}).kernel == "quintic"
     assert "kernel" not in vortex().model_fields_set
+
+
+def test_shifts_take_the_fields_along_only_between_walls_on_all_sides():
+    closed = tank().replace({"numerics.free_surface": False})
+    between_plates = cases.get("poiseuille").scene
+    forms = [
+        automatic.shifting(scene).value for scene in (closed, between_plates, vortex(), tank())
+    ]
+    assert forms == ["consistent", "sun", "sun", "sun"]

@@ -141,7 +141,9 @@ def test_what_a_free_surface_decides(scene: Scene, surface: bool) -> None:
     assert scene.free_surface is surface
     config = json.loads(scene.engine_config())
     assert config["laminar_viscosity"]["form"] == ("monaghan-gingold" if surface else "morris")
-    assert config["shifting"] == {"form": "sun", "free_surface": surface, "every": 1}
+    closed = not surface and scene.periodic is None
+    form = "consistent" if closed else "sun"
+    assert config["shifting"] == {"form": form, "free_surface": surface, "every": 1}
     assert config["acoustic_damper"] == (0.3 if surface else None)
     if scene.wall:
         assert config["wall"]["suction"] is not surface

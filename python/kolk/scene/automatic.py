@@ -54,10 +54,12 @@ def kernel(scene: Scene) -> Choice:
     key = "kernel"
     if key in scene.model_fields_set:
         return _given(key, scene.kernel)
-    if free_surface(scene).value or scene.wall:
-        return Choice(
-            key, "wendland-c2", True, "the least error for its time at walls and surfaces"
-        )
+    if free_surface(scene).value:
+        return Choice(key, "wendland-c2", True, "the least error for its time at a free surface")
+    viscosity = scene.fluid[0].viscosity
+    if viscosity is not None and viscosity.herschel_bulkley is not None:
+        reason = "misses less of the shear between rows that slide along a plug"
+        return Choice(key, "wendland-c2", True, reason)
     reason = "smooths less on the same neighbours: a quarter less error inside a fluid"
     return Choice(key, "wendland-c4", True, reason)
 
@@ -112,6 +114,9 @@ def shifting(scene: Scene) -> Choice:
         return Choice(key, "gentle", True, reason)
     if free_surface(scene).value:
         reason = "keeps stretched tongues of fluid from breaking up, and leaves the surface alone"
+    elif scene.wall and not any(scene.periodic_axes):
+        reason = "takes velocity along: half the error where a flow turns round between walls"
+        return Choice(key, "consistent", True, reason)
     else:
         reason = "keeps particles evenly spread where pressure turns negative"
     return Choice(key, "sun", True, reason)

@@ -60,8 +60,8 @@ class Scene(Model):
     kernel: Literal["auto", "wendland-c2", "wendland-c4", "wendland-c6", "cubic", "quintic"] = (
         Field(
             default="auto",
-            description="smoothing kernel; auto: wendland-c2, but wendland-c4 without walls and "
-            "free surface",
+            description="smoothing kernel; auto: wendland-c2, but wendland-c4 without a "
+            "free surface and a yield stress",
         )
     )
     gravity: GravityKey | None = Field(

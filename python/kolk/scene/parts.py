@@ -350,7 +350,7 @@ class Numerics(Model):
         description="gentle: as sun, with 0.3 of the strength and near a surface only along it; "
         "consistent: as sun, and particles take velocity and density along; transport-velocity: by "
         "a background pressure, without a free surface only; auto: sun, but gentle with surface "
-        "tension",
+        "tension and consistent between walls on all sides",
     )
     shifting_interval: Annotated[int, Field(ge=1, le=4)] = Field(
         default=1,
