@@ -1,65 +1,14 @@
 //! The operators: exact where they should be, convergent elsewhere, conservative where they claim it.
 
+mod common;
+
+use common::{Noise, points, with_cloud};
 use kolk::kernel::KernelName;
 use kolk::operators::{
-    Cloud, Diffusion, Shift, corrections, density_diffusion, divergence, free_surface, gradient,
-    interpolate, laplacian, particle_shift, smallest_eigenvalue,
+    Cloud, Diffusion, Shift, corrections, density_diffusion, divergence, gradient, interpolate,
+    laplacian, particle_shift, smallest_eigenvalue,
 };
 use std::f64::consts::TAU;
-
-/// A generator of numbers in -1..1, the same in every run.
-struct Noise(u64);
-
-impl Noise {
-    fn next(&mut self) -> f64 {
-        self.0 = self
-            .0
-            .wrapping_mul(6_364_136_223_846_793_005)
-            .wrapping_add(1_442_695_040_888_963_407);
-        (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-    }
-}
-
-/// `side`^D points of the unit cube's lattice, each displaced by up to `jitter` spacings.
-fn points<const D: usize>(side: usize, jitter: f64) -> Vec<[f64; D]> {
-    let mut noise = Noise(7);
-    (0..side.pow(D as u32))
-        .map(|k| {
-            std::array::from_fn(|a| {
-                let node = (k / side.pow(a as u32) % side) as f64 + 0.5;
-                (node + jitter * noise.next()) / side as f64
-            })
-        })
-        .collect()
-}
-
-/// Runs `test` on a cloud of density 1000 and of masses that differ by a tenth.
-fn with_cloud<const D: usize>(
-    position: &[[f64; D]],
-    spacing: f64,
-    periodic: bool,
-    kernel: KernelName,
-    test: impl FnOnce(&Cloud<D>),
-) {
-    let mut noise = Noise(3);
-    let density = vec![1000.0; position.len()];
-    let mass: Vec<f64> = (0..position.len())
-        .map(|_| {
-            1000.0
-                * spacing.powi(D as i32)
-                * (1.0 + if periodic { 0.0 } else { 0.05 * noise.next() })
-        })
-        .collect();
-    let periods = [periodic.then_some([0.0, 1.0]); D];
-    test(&Cloud::new(
-        position,
-        &mass,
-        &density,
-        kernel,
-        1.5 * spacing,
-        &periods,
-    ));
-}
 
 fn linear_fields_are_exact<const D: usize>(side: usize, kernel: KernelName) {
     let position = points::<D>(side, 0.4);
@@ -253,7 +202,7 @@ fn density_diffusion_leaves_alone_what_it_should_and_conserves_mass() {
     // Hydrostatics relative to ρ0 rather than to the pair's density: 3 % off at this depth.
     assert!(worst(&density, fourtakas).0 < 0.05 * molteni);
     let mut noise = Noise(5);
-    let rough: Vec<f64> = density.iter().map(|d| d + noise.next()).collect();
+    let rough: Vec<f64> = density.iter().map(|d| d + noise.number()).collect();
     for form in [Diffusion::Molteni, Diffusion::Antuono] {
         let (rate, sum) = worst(&rough, form);
         assert!(
@@ -290,164 +239,6 @@ fn density_diffusion_smooths_at_the_rate_of_its_diffusivity() {
             (rate - expected).abs() < 0.03 * delta * h * c * TAU * TAU,
             "{rate}, {expected}"
         );
-    }
-}
-
-#[test]
-fn the_free_surface_of_a_square_is_its_rim() {
-    let side = 16;
-    for jitter in [0.0, 0.1] {
-        let position = points::<2>(side, jitter);
-        with_cloud(
-            &position,
-            1.0 / side as f64,
-            false,
-            KernelName::WendlandC2,
-            |cloud| {
-                let surface = free_surface(cloud);
-                for (k, &on) in surface.on.iter().enumerate() {
-                    let (x, y) = (k % side, k / side);
-                    let rim = x.min(y).min(side - 1 - x).min(side - 1 - y) == 0;
-                    assert_eq!(
-                        on, rim,
-                        "particle ({x}, {y}), eigenvalue {}",
-                        surface.eigenvalue[k]
-                    );
-                }
-                let top = surface.normal[side * (side - 1) + side / 2];
-                assert!(top[1] > 0.95, "{top:?}");
-            },
-        );
-    }
-}
-
-/// Particles in rings or shells of radius (k + 1/2) spacings, `k` in `layers`, displaced by up to `jitter` spacings; with
-/// the number `k` of each.
-fn layers<const D: usize>(
-    layers: std::ops::Range<usize>,
-    jitter: f64,
-) -> (Vec<[f64; D]>, Vec<usize>) {
-    let mut noise = Noise(11);
-    let (mut position, mut layer) = (Vec::new(), Vec::new());
-    for k in layers {
-        let radius = k as f64 + 0.5;
-        let count = if D == 2 {
-            (TAU * radius).round()
-        } else {
-            (2.0 * TAU * (radius * radius + 1.0 / 12.0)).round()
-        };
-        for m in 0..count as usize {
-            // In 3D along a spiral of golden angles, at equal steps of the height.
-            let (turn, height) = if D == 2 {
-                (m as f64 / count + 0.37 * k as f64, 0.0)
-            } else {
-                let golden = 0.5 * (3.0 - 5.0_f64.sqrt());
-                (m as f64 * golden, 1.0 - 2.0 * (m as f64 + 0.5) / count)
-            };
-            let flat = (1.0 - height * height).sqrt();
-            let unit = [flat * (TAU * turn).cos(), flat * (TAU * turn).sin(), height];
-            position.push(std::array::from_fn(|a| {
-                radius * unit[a] + jitter * noise.next()
-            }));
-            layer.push(k);
-        }
-    }
-    (position, layer)
-}
-
-/// The outermost layer of a disc or ball and the innermost around a hollow in it are its surface, and no other particle
-/// is; normals lead away from it.
-fn surface_of_layers<const D: usize>(range: std::ops::Range<usize>, h: f64, jitter: f64) {
-    let (position, layer) = layers::<D>(range.clone(), jitter);
-    let volume = vec![1.0; position.len()];
-    let cloud = Cloud::new(
-        &position,
-        &volume,
-        &volume,
-        KernelName::WendlandC2,
-        h,
-        &[None; D],
-    );
-    let surface = free_surface(&cloud);
-    let hollow = range.start > 0;
-    for (i, &k) in layer.iter().enumerate() {
-        let (outer, inner) = (k + 1 == range.end, hollow && k == range.start);
-        let what = format!("{D}D, layer {k} of {range:?}, h = {h}, jitter {jitter}");
-        assert_eq!(
-            surface.on[i],
-            outer || inner,
-            "{what}: eigenvalue {}",
-            surface.eigenvalue[i]
-        );
-        if outer || inner {
-            let x = position[i];
-            let radius = x.iter().map(|x| x * x).sum::<f64>().sqrt();
-            let along: f64 = (0..D).map(|a| surface.normal[i][a] * x[a] / radius).sum();
-            let along = if outer { along } else { -along };
-            assert!(along > 0.8, "{what}: the normal is {:?}", surface.normal[i]);
-        }
-    }
-}
-
-#[test]
-fn the_free_surface_of_round_bodies_and_hollows_is_their_outermost_layer() {
-    for jitter in [0.0, 0.1] {
-        surface_of_layers::<2>(0..16, 2.0, jitter);
-        surface_of_layers::<2>(4..16, 2.0, jitter);
-        surface_of_layers::<3>(0..9, 1.7, jitter);
-        surface_of_layers::<3>(4..11, 1.7, jitter);
-    }
-}
-
-#[test]
-fn the_free_surface_of_square_cavities_is_their_rim() {
-    const SIDE: usize = 40;
-    // Cavities of 8, 6 by 16 and 6 spacings.
-    let cavities = [[8, 8, 16, 16], [22, 6, 28, 22], [27, 28, 33, 34]];
-    let wet = |x: usize, y: usize| {
-        (1..=SIDE).contains(&x)
-            && (1..=SIDE).contains(&y)
-            && !cavities
-                .iter()
-                .any(|[a, b, c, d]| (*a..*c).contains(&(x - 1)) && (*b..*d).contains(&(y - 1)))
-    };
-    // Beside a corner, disorder turns the normal of a wide support far enough to find the neighbours along the rim.
-    for (jitter, h) in [(0.0, 2.0), (0.1, 1.5)] {
-        let mut noise = Noise(5);
-        let (mut position, mut rims) = (Vec::new(), Vec::new());
-        for (x, y) in (0..SIDE * SIDE).map(|k| (k % SIDE + 1, k / SIDE + 1)) {
-            if !wet(x, y) {
-                continue;
-            }
-            position.push([x as f64, y as f64].map(|x| x + jitter * noise.next()));
-            let open = |dx: [usize; 2]| !wet(x + dx[0] - 1, y + dx[1] - 1);
-            let edge = [[0, 1], [2, 1], [1, 0], [1, 2]].into_iter().any(open);
-            let corner = [[0, 0], [2, 0], [0, 2], [2, 2]].into_iter().any(open);
-            // What has but the corner of a cavity before it may be called either.
-            rims.push(if edge {
-                Some(true)
-            } else {
-                (!corner).then_some(false)
-            });
-        }
-        let volume = vec![1.0; position.len()];
-        let cloud = Cloud::new(
-            &position,
-            &volume,
-            &volume,
-            KernelName::WendlandC2,
-            h,
-            &[None; 2],
-        );
-        let surface = free_surface(&cloud);
-        for (i, rim) in rims.iter().enumerate() {
-            let Some(rim) = *rim else { continue };
-            assert_eq!(
-                surface.on[i], rim,
-                "{:?}, eigenvalue {}",
-                position[i], surface.eigenvalue[i]
-            );
-        }
     }
 }
 
@@ -498,32 +289,4 @@ fn shifting_spreads_particles<const D: usize>(side: usize) {
 fn shifting_spreads_particles_evenly() {
     shifting_spreads_particles::<2>(20);
     shifting_spreads_particles::<3>(9);
-}
-
-#[test]
-fn shifting_never_pushes_through_the_free_surface() {
-    let side = 16;
-    let position = points::<2>(side, 0.1);
-    with_cloud(
-        &position,
-        1.0 / side as f64,
-        false,
-        KernelName::WendlandC2,
-        |cloud| {
-            let surface = free_surface(cloud);
-            let free = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, false);
-            let kept = particle_shift(cloud, Shift::Lind, 1.0 / side as f64, true);
-            let mut outward = 0.0_f64;
-            for i in (0..position.len()).filter(|&i| surface.on[i]) {
-                let along = |shift: &[f64; 2]| {
-                    shift[0] * surface.normal[i][0] + shift[1] * surface.normal[i][1]
-                };
-                outward = outward.max(along(&free[i]));
-                assert!(along(&kept[i]).abs() < 1e-15);
-            }
-            assert!(outward > 0.005, "{outward}");
-            let middle = position.len() / 2 + side / 2;
-            assert_eq!(free[middle], kept[middle]);
-        },
-    );
 }

@@ -5,6 +5,8 @@
 pub mod disorder;
 pub mod faces;
 
+use kolk::kernel::KernelName;
+use kolk::operators::Cloud;
 use kolk::particles::Given;
 use kolk::simulation::{BodyInput, Config, Entries, Entry, Precision, Simulation};
 use serde_json::{Value, json};
@@ -140,6 +142,39 @@ pub fn lattice<const D: usize>(
             })
         })
         .collect()
+}
+
+/// `side`^D points of the unit cube's lattice, each displaced by up to `jitter` spacings.
+pub fn points<const D: usize>(side: usize, jitter: f64) -> Vec<[f64; D]> {
+    lattice([0.0; D], [side; D], 1.0 / side as f64, jitter)
+}
+
+/// Runs `test` on a cloud of density 1000 and of masses that differ by a tenth.
+pub fn with_cloud<const D: usize>(
+    position: &[[f64; D]],
+    spacing: f64,
+    periodic: bool,
+    kernel: KernelName,
+    test: impl FnOnce(&Cloud<D>),
+) {
+    let mut noise = Noise(3);
+    let density = vec![1000.0; position.len()];
+    let mass: Vec<f64> = (0..position.len())
+        .map(|_| {
+            1000.0
+                * spacing.powi(D as i32)
+                * (1.0 + if periodic { 0.0 } else { 0.05 * noise.number() })
+        })
+        .collect();
+    let periods = [periodic.then_some([0.0, 1.0]); D];
+    test(&Cloud::new(
+        position,
+        &mass,
+        &density,
+        kernel,
+        1.5 * spacing,
+        &periods,
+    ));
 }
 
 /// A body of particles at `position` with velocity and density as functions of it, and masses of a lattice.
