@@ -157,6 +157,8 @@ def test_a_scheme_brings_its_diffusion():
     }
     assert found["delta-sph"]["density_diffusion"] == {"form": "molteni", "delta": 0.1}
     assert found["edac"]["density_diffusion"] == {"form": "molteni", "delta": 0.0625}
+    heavy = json.loads(tank(numerics={"scheme": "edac"}).engine_config())
+    assert heavy["density_diffusion"] == {"form": "fourtakas", "delta": 0.0625}
     assert found["riemann"]["density_diffusion"] == {"form": "riemann", "delta": 1.0}
     assert [c["riemann_viscosity"] for c in found.values()] == [False, False, True]
     with pytest.raises(kolk.SceneError, match="diffusion of its own"):

@@ -73,22 +73,25 @@ def scheme(scene: Scene) -> Choice:
     return Choice(key, "delta-sph", True, "the least error for its time")
 
 
-SCHEMES = {
-    # Ramachandran & Puri, Comput. Fluids 179 (2019): nu = alpha h c / 8 with alpha = 0.5, which is
-    # Molteni's form with delta = alpha / 8.
-    "edac": ("molteni", 0.5 / 8.0),
-    # Zhang, Hu & Adams, J. Comput. Phys. 335 (2017): the whole difference of the states.
-    "riemann": ("riemann", 1.0),
-}
-"""Form and coefficient of the density diffusion that a scheme brings along."""
+def diffusion_of_scheme(scene: Scene) -> tuple[str, float] | None:
+    """Form and coefficient of the density diffusion that the scheme brings along, if it does."""
+    chosen = scheme(scene).value
+    if chosen == "edac":
+        # Ramachandran & Puri, Comput. Fluids 179 (2019): nu = alpha h c / 8 with alpha = 0.5, which
+        # is Molteni's form with delta = alpha / 8. Under weight that would smooth the hydrostatic
+        # pressure away at the surface: there of what is beyond it.
+        return ("fourtakas" if scene.weight.any() else "molteni"), 0.5 / 8.0
+    if chosen == "riemann":
+        # Zhang, Hu & Adams, J. Comput. Phys. 335 (2017): the whole difference of the states.
+        return "riemann", 1.0
+    return None
 
 
 def density_diffusion(scene: Scene) -> Choice:
     """The form of density diffusion, or "none"."""
     key = "numerics.density_diffusion"
-    chosen = str(scheme(scene).value)
-    if chosen in SCHEMES:
-        return Choice(key, SCHEMES[chosen][0], True, f'that of numerics.scheme = "{chosen}"')
+    if (own := diffusion_of_scheme(scene)) is not None:
+        return Choice(key, own[0], True, f'that of numerics.scheme = "{scheme(scene).value}"')
     given = scene.numerics.density_diffusion
     if given != "auto":
         return _given(key, given)

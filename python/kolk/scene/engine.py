@@ -31,10 +31,8 @@ def engine_config(scene: Scene) -> dict[str, Any]:
     form_of_diffusion = automatic.density_diffusion(scene).value
     if form_of_diffusion != "none":
         diffusion = {"form": form_of_diffusion, "delta": numerics.delta}
-    scheme = str(automatic.scheme(scene).value)
-    if scheme in automatic.SCHEMES:
-        own, delta = automatic.SCHEMES[scheme]
-        diffusion = {"form": own, "delta": delta}
+    if (own := automatic.diffusion_of_scheme(scene)) is not None:
+        diffusion = {"form": own[0], "delta": own[1]}
     tensile: dict[str, Any] | None = None
     form_of_remedy = automatic.tensile_control(scene).value
     if form_of_remedy != "none":
@@ -80,7 +78,7 @@ def engine_config(scene: Scene) -> dict[str, Any]:
         "density_diffusion": diffusion,
         "acoustic_damper": automatic.acoustic_damper(scene).value or None,
         "shifting": shifting,
-        "riemann_viscosity": scheme == "riemann",
+        "riemann_viscosity": automatic.scheme(scene).value == "riemann",
         "tensile_control": tensile,
         "wall": wall,
         "integrator": automatic.integrator(scene).value,
