@@ -65,5 +65,5 @@ case = Case(
     failure="quadratic time, memory",
     run=run,
     short=("2000 in one cell", "2000 with an aspect of 1e6", "2000 in clouds"),
-    full=("20000 in one cell", "100000 with an aspect of 1e6", "100000 in clouds"),
+    full=("100000 in one cell", "100000 with an aspect of 1e6", "100000 in clouds"),
 )

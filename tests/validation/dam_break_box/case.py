@@ -22,29 +22,43 @@ if TYPE_CHECKING:
 DEFAULT = 50
 """The built-in scene's resolution: a spacing of 0.02 m."""
 SENSORS = ("P1", "P2", "P3", "P4")
+BIN, SAMPLE = 0.02, 0.001
+"""What the record and the samples that its peaks are from are means over, s."""
 PEAK_WITHIN = 0.1
 """The first peak is looked for from the arrival on, so long, in s."""
+
+
+def means(time: FloatArray, value: FloatArray, middle: FloatArray, width: float) -> FloatArray:
+    """Means of a series over ``width`` (s) around each of the times ``middle``."""
+    area = np.concatenate([[0.0], np.cumsum(0.5 * (value[1:] + value[:-1]) * np.diff(time))])
+    ends = [np.interp(middle + half, time, area) for half in (-0.5 * width, 0.5 * width)]
+    return np.asarray((ends[1] - ends[0]) / width, np.float64)
 
 
 def level_error(time: FloatArray, level: FloatArray, record: Reference, name: str) -> float:
     """Mean distance from the record over the times that both cover, over its largest level."""
     measured = record.values(name)
     used = record.time <= time[-1]
-    error = np.abs(np.interp(record.time[used], time, level) - measured[used])
+    error = np.abs(means(time, level, record.time[used], BIN) - measured[used])
     return float(error.mean() / measured[used].max())
 
 
 def impact(
     time: FloatArray, pressure: FloatArray, record: Reference, name: str
 ) -> tuple[float, float]:
-    """Relative errors of the first peak and of the time of arrival, at a quarter of the peak."""
+    """Relative errors of the first peak and of the time of arrival, at a quarter of the peak.
+
+    Both are taken as in the experiment: the peak from means over a sample, the arrival from those
+    of the record.
+    """
     peak, _ = record.peak(name)
-    ours = crossing(time, pressure, 0.25 * peak)
+    ours = crossing(record.time, means(time, pressure, record.time, BIN), 0.25 * peak)
     theirs = crossing(record.time, record.values(name), 0.25 * peak)
     if not math.isfinite(ours):
         return math.nan, math.nan
-    window = (time >= ours) & (time <= ours + PEAK_WITHIN)
-    return abs(float(pressure[window].max()) / peak - 1.0), abs(ours / theirs - 1.0)
+    window = np.arange(ours - BIN, ours + PEAK_WITHIN, SAMPLE)
+    highest = float(means(time, pressure, window, SAMPLE).max())
+    return abs(highest / peak - 1.0), abs(ours / theirs - 1.0)
 
 
 def run(resolution: int) -> Level:
