@@ -195,6 +195,8 @@ def test_the_summary_and_the_last_words_of_a_run_name_the_choices(tank, monkeypa
 def test_the_kernel_follows_the_free_surface():
     assert tank().kernel == "wendland-c2"
     assert vortex().kernel == "wendland-c4"
+    packed = tank().replace({"numerics.free_surface": False, "fluid.water.arrangement": "packed"})
+    assert packed.kernel == "wendland-c2"
     assert cases.get("poiseuille").scene.kernel == "wendland-c4"
     assert cases.get("herschel-bulkley-channel").scene.kernel == "wendland-c2"
     # Left open, it stays so: a surface that is added later changes it.

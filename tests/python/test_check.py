@@ -100,6 +100,41 @@ def test_a_thin_part_of_a_thick_fluid() -> None:
     assert not found(scene.replace(spacing=0.005), "less than 4 particles thick")
 
 
+def wedge(numerics: dict[str, object], **fluid: object) -> Scene:
+    """Water around a wedge whose faces, at 45 degrees, run through points of the lattice."""
+    solid = {"polygon": {"points": [[0.25, 0.0], [0.75, 0.0], [0.5, 0.25]]}}
+    box = {"box": {"from": [0.0, 0.0], "to": [1.0, 0.5]}}
+    shape = {"difference": {"of": box, "minus": [solid]}}
+    water = {"name": "water", "shape": shape, "viscosity": {"artificial": 0.02}, **fluid}
+    basin = {"tank": {"from": [0.0, 0.0], "to": [1.0, 0.6], "open": ["top"]}}
+    return Scene(
+        name="wedge",
+        dimension=2,
+        spacing=0.05,
+        until=1.0,
+        gravity=[0.0, -9.81],
+        fluid=[water],
+        wall=[{"name": "tank", "shape": basin}, {"name": "wedge", "shape": solid}],
+        numerics=numerics,
+    )
+
+
+def test_a_point_of_the_lattice_on_a_surface_is_the_wall_s() -> None:
+    scene = wedge({})
+    water, solid = (b.position for b in scene.filling.bodies if b.name in ("water", "wedge"))
+    mirrored = np.stack([1.0 - water[:, 0], water[:, 1]], axis=1)
+    assert len(np.unique(np.round(np.concatenate([water, mirrored]), 9), axis=0)) == len(water)
+    between = np.linalg.norm(water[:, None] - solid[None], axis=2).min()
+    assert between == pytest.approx(scene.spacing)
+    assert check(scene).warnings == ()
+
+
+def test_walls_of_facets_beside_a_lattice_that_does_not_fit_them() -> None:
+    (warning,) = check(wedge({"wall": "semi-analytical"})).warnings
+    assert "'wedge'" in warning and '"packed"' in warning
+    assert check(wedge({"wall": "semi-analytical"}, arrangement="packed")).warnings == ()
+
+
 def test_particles_on_top_of_each_other() -> None:
     import kolk
 

@@ -113,7 +113,8 @@ def _section(name: str, found: dict[str, Any]) -> str:
     if WITHOUT in found:
         without = _result(found[WITHOUT])
         missed = ", ".join(f"{f} (limit {f.limit})" for f in without.missed)
-        end = f"the guard stops it, {without.stopped}" if without.stopped else missed
+        stopped = (without.stopped or "").partition(". Probable cause")[0]
+        end = f"the guard stops it, {stopped}" if stopped else missed
         lines += ["", f"Without {case.remedy}: {end or 'no limit is missed'}."]
     lines += ["", *_where(found, [*there, *([WITHOUT] if WITHOUT in found else [])])]
     return "\n".join(lines)

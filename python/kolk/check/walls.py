@@ -8,9 +8,10 @@ import numpy as np
 import numpy.typing as npt
 
 from kolk.scene import Body, Scene
+from kolk.scene.automatic import FACETS
 from kolk.scene.fill import lattice
 from kolk.scene.parts import Wall
-from kolk.scene.shapes import Tank
+from kolk.scene.shapes import Box, Tank
 
 FloatArray = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -27,7 +28,7 @@ NARROWEST = 0.75
 
 def warnings(scene: Scene, bodies: list[Body]) -> list[str]:
     """What is doubtful about the walls of ``scene``."""
-    return [*_thin(scene), *_double(scene, bodies), *_gaps(scene, bodies)]
+    return [*_thin(scene), *_unfitted(scene), *_double(scene, bodies), *_gaps(scene, bodies)]
 
 
 def layers(scene: Scene, wall: Wall) -> int:
@@ -54,6 +55,19 @@ def _thin(scene: Scene) -> list[str]:
                 "or refine spacing"
             )
     return found
+
+
+def _unfitted(scene: Scene) -> list[str]:
+    """Walls of facets need the first layer half a spacing away, where no lattice has it."""
+    if scene.numerics.wall not in FACETS or all(f.arrangement == "packed" for f in scene.fluid):
+        return []
+    return [
+        f"wall '{wall.name}' may be slanted or curved, and numerics.wall = "
+        f'"{scene.numerics.wall}" needs particles half a spacing from it: give the fluid '
+        'arrangement = "packed", or use a wall of particles such as "adami"'
+        for wall in scene.wall
+        if wall.shape is not None and not isinstance(wall.shape.shape, (Box, Tank))
+    ]
 
 
 def _double(scene: Scene, bodies: list[Body]) -> list[str]:

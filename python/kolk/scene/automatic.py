@@ -56,6 +56,8 @@ def kernel(scene: Scene) -> Choice:
         return _given(key, scene.kernel)
     if free_surface(scene).value:
         return Choice(key, "wendland-c2", True, "the least error for its time at a free surface")
+    if any(fluid.arrangement == "packed" for fluid in scene.fluid):
+        return Choice(key, "wendland-c2", True, "the one for which particles are packed evenly")
     viscosity = scene.fluid[0].viscosity
     if viscosity is not None and viscosity.herschel_bulkley is not None:
         reason = "misses less of the shear between rows that slide along a plug"

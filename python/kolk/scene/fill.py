@@ -30,6 +30,8 @@ from .surface import wall_surface
 
 FloatArray = npt.NDArray[np.float64]
 
+ON_SURFACE = 1e-6
+"""Spacings from a surface within which a point of the lattice is on it: it is the wall's."""
 FEWEST_ACROSS = 2
 """Particles that the thinnest extent of a fluid must have: fewer are no fluid."""
 
@@ -152,8 +154,10 @@ def _fluid_part(scene: Scene, fluid: Fluid, others: Sequence[Placed]) -> _Part:
             part = _packed(scene, fluid, shape.distance, (low, high), shape.exact_size(), others)
         else:
             points, steps = lattice(shape, scene.spacing)
-            inside = points if isinstance(shape, Box) else points[shape.contains(points)]
-            part = _Part(inside, float(np.prod(steps)), steps)
+            if not isinstance(shape, Box):
+                # Else rounding would say on which side a point of a slanted surface is.
+                points = points[shape.distance(points) < -ON_SURFACE * scene.spacing]
+            part = _Part(points, float(np.prod(steps)), steps)
         if len(part.position) == 0:
             raise _empty(scene, where)
     if fluid.jitter > 0.0:
@@ -231,7 +235,7 @@ def _wall_part(scene: Scene, wall: Wall) -> _Part:
         return _Part(along, scene.spacing**scene.dimension, cell)
     points, steps = lattice(shape, scene.spacing, scene.wall_layers)
     distance = shape.distance(points)
-    keep = distance < 0.0
+    keep = distance < ON_SURFACE * scene.spacing
     if not isinstance(shape, Tank):
         # What lies deeper than the kernel reaches is never felt.
         keep &= distance > -scene.wall_layers * scene.spacing

@@ -61,7 +61,7 @@ class Scene(Model):
         Field(
             default="auto",
             description="smoothing kernel; auto: wendland-c2, but wendland-c4 without a "
-            "free surface and a yield stress",
+            "free surface, a yield stress and packed particles",
         )
     )
     gravity: GravityKey | None = Field(
